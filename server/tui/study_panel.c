@@ -21,7 +21,8 @@ enum {
     LEAST_DOUBLED_ROWS = 18,
     AROUND_MAP = 16, // the frame, the axes, and seven lines of sentences below
     SIDE_COLUMNS = 46,
-    MOST_ROWS = 1 << 20 // more than any text has
+    MOST_ROWS = 1 << 20, // more than any text has
+    BETWEEN_CORNERS = 6  // columns of the upper edge that its title leaves
 };
 
 static const char FALLBACK[] = "baumgarte@rk4:h=0.01";
@@ -485,32 +486,39 @@ static void draw_map(hn_cells *c, hn_area in, const hn_workbench *w) {
     }
 }
 
-void hn_study_panel_draw(hn_cells *c, hn_area area, const hn_workbench *w) {
+/// The name of the study, its length of motion, how far it is, and the key that ends it.
+static void write_title(const hn_workbench *w, int room, char title[HN_TUI_LINE]) {
     const bool cost = hn_tui_study_get_kind(w->study) == HN_TUI_COST;
-    const bool running = hn_tui_study_running(w->study);
     const char *name = cost ? "what accuracy costs" : "stability over alpha and beta";
-    const int room = area.columns - 6; // between the corners
-    const char *moves = cost ? "" : "arrows move, ★ is now, ";
-    char title[HN_TUI_LINE];
     const double time = hn_tui_study_time(w->study);
-    if (running && hn_tui_study_stopping(w->study)) {
-        snprintf(title, sizeof title, "%s in %g s: stopping, what is done stays", name, time);
-    } else if (running) {
-        const double done = 100 * hn_tui_study_share(w->study);
-        const char *format = "%s in %g s: %.0f %% done, %sEsc stops";
-        snprintf(title, sizeof title, format, name, time, done, moves);
-        if (hn_text_columns(title) > room) { // the line of the keys says how to move
-            snprintf(title, sizeof title, format, name, time, done, cost ? "" : "★ is now, ");
-        }
-    } else {
-        const char *format = "%s in %g s: %sEsc goes back";
-        snprintf(title, sizeof title, format, name, time, moves);
-        if (hn_text_columns(title) > room) {
-            snprintf(title, sizeof title, format, name, time, cost ? "" : "★ is now, ");
+    const double done = 100 * hn_tui_study_share(w->study);
+    char state[48] = "", ends[32] = "Esc goes back";
+    if (hn_tui_study_running(w->study) && hn_tui_study_stopping(w->study)) {
+        snprintf(title, HN_TUI_LINE, "%s in %g s: stopping, what is done stays", name, time);
+        return;
+    }
+    if (hn_tui_study_running(w->study)) {
+        snprintf(state, sizeof state, "%.0f %% done, ", done);
+        snprintf(ends, sizeof ends, "Esc stops");
+    } else if (hn_tui_study_stopping(w->study)) {
+        snprintf(state, sizeof state, "stopped at %.0f %%, ", done);
+    }
+
+    // where it is too long the line of the keys alone says how to move
+    static const char *const moves[] = {"arrows move, ★ is now, ", "★ is now, ", ""};
+    for (int i = cost ? 2 : 0; i < 3; i++) {
+        snprintf(title, HN_TUI_LINE, "%s in %g s: %s%s%s", name, time, state, moves[i], ends);
+        if (hn_text_columns(title) <= room) {
+            return;
         }
     }
+}
+
+void hn_study_panel_draw(hn_cells *c, hn_area area, const hn_workbench *w) {
+    char title[HN_TUI_LINE];
+    write_title(w, area.columns - BETWEEN_CORNERS, title);
     const hn_area in = hn_cells_frame(c, area, title);
-    if (cost) {
+    if (hn_tui_study_get_kind(w->study) == HN_TUI_COST) {
         draw_cost(c, in, w);
     } else {
         draw_map(c, in, w);

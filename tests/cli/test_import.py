@@ -47,6 +47,10 @@ class Import(unittest.TestCase):
                 self.assertEqual(run["status"], "ok")
                 self.assertLess(max(run["samples"]["gap"]), 1e-11)
 
+    def test_one_degree_of_freedom_is_one(self):
+        told = self.done("import", HERE + "four-bar.xml").stderr.decode()
+        self.assertRegex(told, r" m and 1 degree of freedom; closure equations that depend on others: 0; that hold in every configuration: 1")
+
     def test_json_lists_the_notes_and_the_assembly(self):
         answer = json.loads(self.done("import", HERE + "four-bar.xml", "--json").stdout)
         self.assertEqual((answer["format"], answer["bodies"], answer["closing"]), ("MJCF", 3, 1))

@@ -172,6 +172,7 @@ class Keys(unittest.TestCase):
         terminal.clear()
         terminal.type("\033")
         self.assertTrue(terminal.wait_for(rb"Esc goes back"))
+        self.assertRegex(terminal.seen, rb"stopped at [0-9]+ %")  # it does not look whole
         terminal.type("q")
         self.assertTrue(terminal.wait_for(rb"loop gap"))
         terminal.type("q")
