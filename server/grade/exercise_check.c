@@ -5,8 +5,10 @@
 #include "expr/print.h"
 #include "grade/exam.h"
 #include "grade/grade.h"
+#include "grade/parts/value_sheet.h"
 #include "grade/variant.h"
 
+#include <ctype.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdbool.h>
@@ -53,18 +55,43 @@ static const char *behind_seed(const char *line) {
     return line + strcspn(line, ",:");
 }
 
-/// Puts one line in the place of many where every variant has the same fault: that of the file.
+/// The end of a number, or of a letter in quotes, that begins at `at`; `at` itself: none does.
+static const char *skip_varied(const char *at) {
+    if (at[0] == '"' && isalpha((unsigned char)at[1]) && at[2] == '"') {
+        return at + 3;
+    }
+    const char *digits = at + (*at == '-');
+    return isdigit((unsigned char)*digits) ? digits + strspn(digits, "0123456789.e+-") : at;
+}
+
+/// Returns whether two lines differ by their numbers and by the letters of options alone.
+static bool are_alike(const char *a, const char *b) {
+    while (*a && *b) {
+        const char *behind_a = skip_varied(a), *behind_b = skip_varied(b);
+        if ((behind_a > a) != (behind_b > b) || (behind_a == a && *a != *b)) {
+            return false;
+        }
+        a = behind_a > a ? behind_a : a + 1;
+        b = behind_b > b ? behind_b : b + 1;
+    }
+    return *a == *b;
+}
+
+/// Puts one line in the place of many where every variant has the same fault; where its numbers
+/// differ, that of the first variant.
 static void join_list(hn_exercise_report *r) {
     if (r->same && r->bad > 1 && r->bad == r->variants) {
-        snprintf(r->list, sizeof r->list, "every seed%s\n", behind_seed(r->first));
+        snprintf(r->list, sizeof r->list, r->varied ? "every seed; %s\n" : "every seed%s\n",
+                 r->varied ? r->first : behind_seed(r->first));
     }
 }
 
 /// Counts a variant; a bad one stands in the list as long as its line fits.
 static void end_trial(const trial *t) {
     hn_exercise_report *r = t->report;
-    r->same =
-        r->variants == 0 || (r->same && strcmp(behind_seed(r->first), behind_seed(t->first)) == 0);
+    const char *one = behind_seed(r->first), *other = behind_seed(t->first);
+    r->same = r->variants == 0 || (r->same && are_alike(one, other));
+    r->varied |= r->variants > 0 && strcmp(one, other) != 0;
     r->variants++;
     r->bad += !t->good;
     if (!r->first[0]) {
@@ -77,13 +104,25 @@ static void end_trial(const trial *t) {
 }
 
 /// Notes how the right answers of a part differ from variant to variant.
-static void note_answer(trial *t, const hn_part *p, const cJSON *answer) {
-    hn_answer_spread *s = &t->report->spread[p - t->variant.part];
+static void note_answer(hn_answer_spread *s, const cJSON *answer) {
+    const cJSON *m;
     if (cJSON_IsNumber(answer)) {
         const double x = answer->valuedouble;
         s->low = s->n > 0 ? fmin(s->low, x) : x;
         s->high = s->n > 0 ? fmax(s->high, x) : x;
         s->n++;
+    } else if (cJSON_IsArray(answer)) {
+        cJSON_ArrayForEach(m, answer) {
+            note_answer(s, m);
+        }
+    }
+}
+
+/// Notes by how much both means of a reference differ; NaN: that was not measured.
+static void note_difference(hn_answer_spread *s, double apart) {
+    if (!isnan(apart)) {
+        s->apart = fmax(s->apart, apart);
+        s->measured++;
     }
 }
 
@@ -103,7 +142,9 @@ static hn_status try_right(trial *t, const hn_part *p) {
         return HN_OK;
     }
     t->report->rights++;
-    note_answer(t, p, answer);
+    hn_answer_spread *spread = &t->report->spread[p - t->variant.part];
+    note_answer(spread, answer);
+    note_difference(spread, hn_value_worst_difference(p));
 
     // graded as a student's, it must pass in every entry
     const hn_status status = p->kind->grade(p, answer, results, &n, &diag);
@@ -247,11 +288,12 @@ static int compare_hashes(const void *a, const void *b) {
     return x < y ? -1 : x > y;
 }
 
+/// Returns how many hashes differ; 0 is that of a variant that could not be drawn.
 static long long count_distinct(uint64_t *hashes, long long n) {
     qsort(hashes, (size_t)n, sizeof *hashes, compare_hashes);
-    long long distinct = n > 0;
-    for (long long i = 1; i < n; i++) {
-        distinct += hashes[i] != hashes[i - 1];
+    long long distinct = 0;
+    for (long long i = 0; i < n; i++) {
+        distinct += hashes[i] != 0 && (i == 0 || hashes[i] != hashes[i - 1]);
     }
     return distinct;
 }
@@ -272,8 +314,10 @@ static void try_differences(trial *t, hn_exam *exam) {
             *x = middle - STEP;
             const double below = hn_exam_value(exam, exam->phi[k / e->n_columns], s);
             *x = middle;
-            if (!(fabs((above - below) / (2 * STEP) - exam->expected[k][s]) <=
-                  1e-7 * (1 + exam->size[k]))) {
+            const double apart =
+                fabs((above - below) / (2 * STEP) - exam->expected[k][s]) / (1 + exam->size[k]);
+            note_difference(&t->report->spread[0], apart);
+            if (!(apart <= 1e-7)) {
                 complain(t, e->answer,
                          "entry %d: the derivative and a difference of phi do not "
                          "agree",

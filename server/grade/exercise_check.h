@@ -6,10 +6,12 @@
 
 #include "grade/exercise.h"
 
-/// The right answers of one part that are numbers.
+/// What was seen of one part; of a matrix of formulas in the first.
 typedef struct hn_answer_spread {
-    long long n; ///< 0: the part asks for something else
+    long long n; ///< right answers that are numbers, or entries of one; 0: something else is asked
     double low, high;
+    long long measured; ///< variants in which the difference of both means was measured
+    double apart;       ///< the largest of these differences, a share of the value
 } hn_answer_spread;
 
 typedef struct hn_exercise_report {
@@ -20,7 +22,8 @@ typedef struct hn_exercise_report {
     /// draws that were refused, by the first condition that did not hold
     long long refused[HN_DRAW_CONDITIONS];
     char first[2 * HN_GRADE_TEXT]; ///< the first fault found, "" if none: seed, part, what happened
-    bool same;                     ///< every variant has the same fault
+    bool same;   ///< every variant has the same fault, but for its numbers and letters
+    bool varied; ///< numbers or letters of the fault differ from variant to variant
     /// for each bad variant, as long as there is room: its seed, part, and the first thing that
     /// happened; one a line. If `same`, one line for all of them.
     char list[2000];

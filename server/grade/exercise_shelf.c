@@ -3,17 +3,53 @@
 
 #include "base/suggest.h"
 #include "grade/exam.h"
+#include "grade/exercise_text.h"
 #include "grade/parts/part_list.h"
 #include "grade/parts/part_model.h"
 #include "grade/variant.h"
 #include "session/compare/picture.h"
 
+#include <ctype.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
-enum { MAX_PROBLEMS = 512 };
+enum { MAX_PROBLEMS = 512, SHORTEST_WORD = 3 };
+
+/// Returns whether a title has a word that begins with `word`, in capitals or not.
+static bool has_word(const char *title, const char *word) {
+    const size_t n = strlen(word);
+    for (const char *at = title; *at; at++) {
+        const bool begins = at == title || !isalnum((unsigned char)at[-1]);
+        if (begins && strncasecmp(at, word, n) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/// Writes which of the first n exercises have a word in their title that begins with `word`; ""
+/// where none has, or where the word is short.
+static void list_titled(const hn_library *lib, const char *word, int n, char hint[HN_DIAG_HINT]) {
+    size_t used = 0;
+    int listed = 0;
+    hint[0] = '\0';
+    for (int i = 0; i < n && strlen(word) >= SHORTEST_WORD && used + 60 < HN_DIAG_HINT; i++) {
+        hn_exercise *e = NULL;
+        const char *id = hn_library_problem_id(lib, i);
+        if (hn_exercise_load_file(hn_library_problem_path(lib, id), &e, NULL) == HN_OK &&
+            has_word(hn_exercise_title(e), word)) {
+            used += used ? 0
+                         : (size_t)snprintf(hint, HN_DIAG_HINT,
+                                            "exercises with '%.20s' in their title:", word);
+            used += (size_t)snprintf(hint + used, HN_DIAG_HINT - used, "%s %.40s",
+                                     listed++ ? "," : "", id);
+        }
+        hn_exercise_free(e);
+    }
+}
 
 hn_status hn_shelf_exercise_load(const hn_library *lib, const char *id, hn_exercise **out,
                                  hn_diags *diags) {
@@ -32,8 +68,9 @@ hn_status hn_shelf_exercise_load(const hn_library *lib, const char *id, hn_exerc
     for (int i = 0; i < n; i++) {
         names[i] = hn_library_problem_id(lib, i);
     }
-    char hint[HN_DIAG_HINT];
-    hn_suggest(hint, id, names, n, "'holonom list problems' names them all");
+    char hint[HN_DIAG_HINT], titled[HN_DIAG_HINT];
+    list_titled(lib, id, n, titled);
+    hn_suggest(hint, id, names, n, titled[0] ? titled : "'holonom list problems' names them all");
     return hn_diags_add(diags, HN_ERR_INPUT, "/problem", hint, "there is no problem '%.80s'", id);
 }
 
@@ -42,6 +79,16 @@ static void put_place(hn_strbuf *b, const hn_exercise *problem) {
     char place[120];
     snprintf(place, sizeof place, "%d, %.100s", atoi(problem->lesson), problem->section);
     hn_json_put_string(b, "place", place);
+}
+
+/// Returns whether a part asks for a choice, whose letters are dealt anew for every seed.
+static bool has_options(const hn_exercise *problem) {
+    for (int i = 0; i < problem->n_parts; i++) {
+        if (problem->parts[i].kind == &hn_part_choice) {
+            return true;
+        }
+    }
+    return false;
 }
 
 /// The names whose numbers differ from variant to variant, in one text.
@@ -59,6 +106,10 @@ static void put_varied(hn_strbuf *b, const hn_exercise *problem) {
         hn_strbuf_printf(&names, "%s%s", i ? " " : "", problem->names[i].name);
     }
     hn_json_put_string(b, "varied", hn_strbuf_text(&names));
+    const char *drawn = names.n                ? hn_strbuf_text(&names)
+                        : has_options(problem) ? "the order of the options"
+                                               : "nothing: the same for all";
+    hn_json_put_string(b, "drawn", drawn);
     b->failed |= names.failed;
     hn_strbuf_reset(&names);
 }
@@ -93,6 +144,7 @@ void hn_shelf_exercises_json(hn_strbuf *b, const hn_library *lib) {
             put_place(b, problem);
             hn_json_put_int(b, "parts", problem->n_parts ? problem->n_parts : 1);
             put_varied(b, problem);
+            hn_exercise_put_ranges(b, problem);
             hn_json_put_string(b, "scene", hn_exercise_scene(problem));
             hn_json_put_number(b, "points", hn_exercise_points(problem));
             hn_json_put_int(b, "minutes", count_minutes(problem));

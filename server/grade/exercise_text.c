@@ -14,13 +14,19 @@
 /// Pivots of J J' below this share of its largest diagonal: the rows of J depend on each other.
 static const double SINGULAR = 1e-9;
 
-/// The shape of a submission with dots for the formulas.
-static void submission_form(hn_strbuf *b, const hn_exercise *p, const char *student) {
+/// The shape of a submission with dots for the formulas. seed 0: the exercise's own.
+static void submission_form(hn_strbuf *b, const hn_exercise *p, uint64_t seed,
+                            const char *student) {
     hn_strbuf_add(b, "{");
     if (student) {
-        hn_strbuf_add(b, "\"student\": ");
-        hn_json_string(b, student);
-        hn_strbuf_add(b, ", ");
+        hn_strbuf name;
+        hn_strbuf_init(&name);
+        hn_json_string(&name, student);
+        hn_strbuf_printf(b, "\"student\": %s, ", hn_strbuf_text(&name));
+        b->failed |= name.failed;
+        hn_strbuf_reset(&name);
+    } else if (seed) {
+        hn_strbuf_printf(b, "\"seed\": %llu, ", (unsigned long long)seed);
     }
     hn_strbuf_printf(b, "\"%s\": [", p->answer);
     for (int i = 0; i < p->n_rows; i++) {
@@ -117,7 +123,7 @@ void hn_exercise_text(hn_strbuf *b, const hn_exercise *p, uint64_t seed, const c
     hn_strbuf_add(b, "\n");
     put_numbers(b, p, seed);
     hn_strbuf_add(b, "\nHand in a JSON file:\n  ");
-    submission_form(b, p, student);
+    submission_form(b, p, seed, student);
     hn_strbuf_add(b, "\nEach entry is a formula in quotes; names:");
     for (int i = 0; i < p->n_names; i++) {
         hn_strbuf_printf(b, "%s %s", i ? "," : "", p->names[i].name);
@@ -179,6 +185,38 @@ static void put_question(hn_strbuf *b, const hn_exercise *p) {
     hn_json_strings(b, p->phi, (size_t)p->n_rows);
 }
 
+void hn_exercise_put_ranges(hn_strbuf *b, const hn_exercise *p) {
+    const cJSON *m;
+    hn_json_key(b, "ranges");
+    hn_json_object(b);
+    cJSON_ArrayForEach(m, cJSON_GetObjectItemCaseSensitive(p->root, "draw")) {
+        const bool hidden = hn_exercise_is_hidden(p, m->string);
+        char *text = hidden ? NULL : cJSON_PrintUnformatted(m);
+        if (text) {
+            hn_json_key(b, m->string);
+            hn_json_raw(b, text);
+        }
+        b->failed |= !text && !hidden;
+        cJSON_free(text);
+    }
+    for (int i = 0; !p->n_parts && i < p->n_names; i++) {
+        const hn_grade_name *name = &p->names[i];
+        hn_json_key(b, name->name);
+        hn_json_object(b);
+        if (name->formula) {
+            hn_json_put_string(b, "formula", name->formula);
+        } else {
+            hn_json_key(b, "range");
+            hn_json_array(b);
+            hn_json_number(b, name->low);
+            hn_json_number(b, name->high);
+            hn_json_end_array(b);
+        }
+        hn_json_end_object(b);
+    }
+    hn_json_end_object(b);
+}
+
 void hn_exercise_put_names(hn_strbuf *b, const hn_exercise *p) {
     hn_json_put_string(b, "id", p->id);
     hn_json_put_string(b, "title", p->title);
@@ -187,7 +225,7 @@ void hn_exercise_put_names(hn_strbuf *b, const hn_exercise *p) {
     hn_json_put_string(b, "scene", p->scene);
 }
 
-void hn_exercise_json(hn_strbuf *b, const hn_exercise *p, uint64_t seed) {
+void hn_exercise_json(hn_strbuf *b, const hn_exercise *p, uint64_t seed, const char *student) {
     char hash[17];
     hn_hash_hex(p->hash, hash);
     hn_json_object(b);
@@ -197,6 +235,7 @@ void hn_exercise_json(hn_strbuf *b, const hn_exercise *p, uint64_t seed) {
     hn_json_put_string(b, "hash", hash);
     put_question(b, p);
     put_number_members(b, p, seed);
+    hn_exercise_put_ranges(b, p);
 
     // how answers are compared, and the shape of a submission
     hn_json_key(b, "tolerance");
@@ -207,7 +246,7 @@ void hn_exercise_json(hn_strbuf *b, const hn_exercise *p, uint64_t seed) {
     hn_json_end_object(b);
     hn_strbuf form;
     hn_strbuf_init(&form);
-    submission_form(&form, p, NULL);
+    submission_form(&form, p, seed, student);
     hn_json_put_string(b, "submission", hn_strbuf_text(&form));
     b->failed |= form.failed;
     hn_strbuf_reset(&form);

@@ -13,7 +13,10 @@ void hn_exercise_text(hn_strbuf *b, const hn_exercise *problem, uint64_t seed, c
 /// Writes what an exercise is called and where it stands, as members of the open object: "id",
 /// "title", "lesson", "section", "scene".
 void hn_exercise_put_names(hn_strbuf *b, const hn_exercise *problem);
+/// Writes the member "ranges": for each name, but the hidden ones, how its number is drawn.
+void hn_exercise_put_ranges(hn_strbuf *b, const hn_exercise *problem);
 /// {"id","title","statement","points","entries":[..],"seed","numbers":{..},"velocity":{..},
-/// "submission":".."}.
-void hn_exercise_json(hn_strbuf *b, const hn_exercise *problem, uint64_t seed);
+/// "submission":".."}. The submission begins with the seed, or with the student, of the variant;
+/// with neither where seed is 0 and student NULL.
+void hn_exercise_json(hn_strbuf *b, const hn_exercise *problem, uint64_t seed, const char *student);
 #endif

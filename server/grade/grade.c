@@ -6,9 +6,9 @@
 #include "base/json_text.h"
 #include "expr/print.h"
 #include "grade/exam.h"
-#include "grade/list_text.h"
 #include "grade/mistakes.h"
 #include "grade/other_variant.h"
+#include "grade/parts/list_text.h"
 #include "grade/parts/read_as.h"
 #include "grade/parts/spelling.h"
 #include "grade/repeated_member.h"
@@ -223,11 +223,15 @@ static void show_state(hn_verdict *v, const hn_exam *exam) {
     v->n_names = p->n_names;
     v->n_params = p->n_params;
     for (int k = v->n_entries; k-- > 0;) {
-        v->shown_entry = v->entry[k].state >= 0 ? k : v->shown_entry;
+        hn_entry_verdict *e = &v->entry[k];
+        if (e->state >= 0) {
+            v->shown_entry = k;
+            memcpy(e->at, exam->state[e->state], sizeof e->at);
+        }
     }
     for (int i = 0; i < p->n_names && v->shown_entry >= 0; i++) {
         v->names[i] = p->names[i].name;
-        v->values[i] = exam->state[v->entry[v->shown_entry].state][i];
+        v->values[i] = v->entry[v->shown_entry].at[i];
     }
 }
 
@@ -356,6 +360,7 @@ static hn_status grade_tree(hn_verdict *v, cJSON *root, bool chosen) {
     // the file's own variant where the caller leaves it open
     const uint64_t said = chosen ? 0 : hn_variant_seed_said(v->problem, root);
     v->seed = said ? said : v->seed;
+    v->unnamed = chosen && hn_variant_seed_said(v->problem, root) == 0;
     if (!chosen && !hn_variant_check_names(v->problem, root, v)) {
         return HN_OK;
     }

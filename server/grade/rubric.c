@@ -10,6 +10,7 @@
 #include "grade/toml_text.h"
 
 #include <ctype.h>
+#include <limits.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdbool.h>
@@ -90,6 +91,23 @@ hn_status hn_rubric_fault(const hn_rubric *r, hn_diags *diags, const char *secti
     va_end(list);
     return hn_diags_add(diags, HN_ERR_INPUT, section, hint, "line %d: %.300s",
                         line_of(r, section, key), what);
+}
+
+/// Returns the line that a fault names; that of one without a line is behind all others.
+static int line_of_fault(const hn_diag *diag) {
+    int line = INT_MAX;
+    return sscanf(diag->message, "line %d:", &line) == 1 ? line : INT_MAX;
+}
+
+void hn_rubric_sort_faults(hn_diags *diags) {
+    for (int i = 1; i < diags->n; i++) {
+        const hn_diag one = diags->item[i];
+        int k = i;
+        for (; k > 0 && line_of_fault(&diags->item[k - 1]) > line_of_fault(&one); k--) {
+            diags->item[k] = diags->item[k - 1];
+        }
+        diags->item[k] = one;
+    }
 }
 
 const cJSON *hn_rubric_section(const hn_rubric *r, const char *name) {
@@ -182,7 +200,7 @@ static hn_status check_tolerances(const hn_rubric *r, hn_diags *diags) {
                     r, diags, "tolerance", m->string, hint,
                     "the relative tolerance %g of part %.20s is %s; %g to %g is allowed",
                     x->valuedouble, m->string,
-                    x->valuedouble < TIGHTEST ? "below the error of the reference"
+                    x->valuedouble < TIGHTEST ? "tighter than that to which references are proved"
                                               : "too wide to tell mistakes apart",
                     TIGHTEST, LOOSEST);
             }

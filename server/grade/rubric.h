@@ -50,4 +50,6 @@ const cJSON *hn_rubric_section(const hn_rubric *r, const char *name);
 /// Reports a fault at the line of `key` (may be NULL) within a field. Returns HN_ERR_INPUT.
 hn_status hn_rubric_fault(const hn_rubric *r, hn_diags *diags, const char *section, const char *key,
                           const char *hint, const char *format, ...) HN_PRINTF(6, 7);
+/// Puts the faults of a rubric into the order of the lines that they name.
+void hn_rubric_sort_faults(hn_diags *diags);
 #endif

@@ -277,6 +277,7 @@ void hn_variant_json(hn_strbuf *b, hn_variant *x) {
         }
     }
     hn_json_end_object(b);
+    hn_exercise_put_ranges(b, p);
     hn_json_put_int(b, "hints", p->n_hints);
     hn_json_end_object(b);
 }

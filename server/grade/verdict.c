@@ -10,11 +10,30 @@
 #include <stdlib.h>
 #include <string.h>
 
-/// "at l1 = 1.2, ..., th4 = -0.3"
-static void add_state(hn_strbuf *b, const hn_verdict *v) {
+enum { TERMINAL_COLUMNS = 80 };
+
+/// "at        l1 = 1.2, ..., th4 = -0.3": the state of an entry, in lines of 80 columns.
+static void add_state(hn_strbuf *b, const hn_verdict *v, const hn_entry_verdict *e,
+                      const char *indent) {
+    static const char HEAD[] = "at        ";
+    const int margin = (int)(strlen(indent) + strlen(HEAD));
+    int column = margin;
+    hn_strbuf_printf(b, "%s%s", indent, HEAD);
     for (int i = 0; i < v->n_names; i++) {
-        hn_strbuf_printf(b, "%s%s = %.6g", i ? ", " : "", v->names[i], v->values[i]);
+        char text[64];
+        const int n = snprintf(text, sizeof text, "%s = %.6g%s", v->names[i], e->at[i],
+                               i < v->n_names - 1 ? "," : "");
+        if (i > 0 && column + 1 + n > TERMINAL_COLUMNS) {
+            hn_strbuf_printf(b, "\n%*s", margin, "");
+            column = margin;
+        } else if (i > 0) {
+            hn_strbuf_add(b, " ");
+            column++;
+        }
+        hn_strbuf_add(b, text);
+        column += n;
     }
+    hn_strbuf_add(b, "\n");
 }
 
 static void add_number(hn_strbuf *b, double x) {
@@ -76,6 +95,9 @@ void hn_verdict_entry_text(hn_strbuf *b, const hn_verdict *v, const hn_entry_ver
         hn_strbuf_printf(b, ", off by more than the %.2g allowed", e->allowed);
     }
     hn_strbuf_add(b, "\n");
+    if (e->state >= 0 && v->n_names > 0) {
+        add_state(b, v, e, indent);
+    }
 }
 
 void hn_verdict_text(hn_strbuf *b, const hn_verdict *v) {
@@ -106,11 +128,6 @@ void hn_verdict_text(hn_strbuf *b, const hn_verdict *v) {
         hn_strbuf_printf(b, "  %-*s %4g / %g  %s\n", widest, e->name, e->points, e->max_points,
                          e->mistake[0] ? e->mistake : "right");
         hn_verdict_entry_text(b, v, e, "        ");
-        if (k == v->shown_entry && v->n_names > 0) {
-            hn_strbuf_add(b, "        at        ");
-            add_state(b, v);
-            hn_strbuf_add(b, "\n");
-        }
     }
     if (v->n_states > 0 && v->seed == 0) {
         hn_strbuf_printf(b, "compared at %d states of the motion\n", v->n_states);
@@ -291,12 +308,33 @@ static void put_test(hn_strbuf *b, const hn_verdict *v, const hn_entry_verdict *
     hn_strbuf_reset(&name);
 }
 
+/// Writes the sentence on the whole that a student reads at once: where parts are shown later, it
+/// counts the entries of the others alone.
+static void put_visible_summary(hn_strbuf *b, const hn_verdict *v) {
+    int right = 0, visible = 0;
+    for (int k = 0; k < v->n_entries; k++) {
+        const hn_entry_verdict *e = &v->entry[k];
+        if (strcmp(hn_rubric_visibility(v->problem->rubric, e->name), "visible") == 0) {
+            visible++;
+            right += e->right;
+        }
+    }
+    if (visible == v->n_entries) {
+        hn_strbuf_add(b, v->summary);
+    } else {
+        hn_strbuf_printf(b, "%d of the %d entries that are shown are right", right, visible);
+    }
+}
+
 void hn_verdict_gradescope(hn_strbuf *b, const hn_verdict *v, double execution_time) {
     int graded = v->kind == HN_VERDICT_GRADED;
     hn_strbuf output;
     hn_strbuf_init(&output);
-    hn_strbuf_printf(&output, graded ? "%s%s" : "This cannot be graded: %s. %s",
-                     graded ? v->summary : v->reason, graded ? "" : v->hint);
+    if (graded) {
+        put_visible_summary(&output, v);
+    } else {
+        hn_strbuf_printf(&output, "This cannot be graded: %s. %s", v->reason, v->hint);
+    }
     if (graded && v->note[0]) {
         hn_strbuf_printf(&output, "\nNote: %s.", v->note);
     }

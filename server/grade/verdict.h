@@ -24,6 +24,7 @@ typedef struct hn_entry_verdict {
     uint64_t likeness; ///< equal for equal wrong answers, whatever the variant; 0: says nothing
     int state;         ///< the state where it shows, -1 if right or unreadable
     double given_value, expected_value, allowed; ///< at that state; meaningless while state is -1
+    double at[HN_GRADE_MAX_NAMES]; ///< the state itself, in the order of the verdict's names
 } hn_entry_verdict;
 
 /// The program of a scene that was graded: with it the verdict can be made again.
@@ -38,6 +39,7 @@ typedef enum hn_verdict_kind { HN_VERDICT_GRADED, HN_VERDICT_UNGRADABLE } hn_ver
 
 typedef struct hn_verdict {
     hn_verdict_kind kind;
+    bool unnamed;                ///< the caller chose the variant, and the file names none
     bool no_submission;          ///< ungradable, and the exercise or the rubric is at fault
     char reason[HN_GRADE_TEXT];  ///< ungradable: why, and where
     char hint[HN_GRADE_TEXT];    ///< ungradable: what to do

@@ -90,7 +90,7 @@ static hn_status make(hn_tui_exercise *x, const hn_library *library, const char 
         }
         hn_variant_reset(&variant);
     } else {
-        hn_exercise_json(&b, x->exercise, 0);
+        hn_exercise_json(&b, x->exercise, 0, NULL);
     }
     x->document = cJSON_Parse(hn_strbuf_text(&b));
     hn_strbuf_reset(&b);

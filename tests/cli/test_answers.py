@@ -249,9 +249,19 @@ def what_looks_like_an_answer(folder):
     done = run("grade", write(folder, "wrong.json", exercise), write(folder, "answer.json", {"a": 0.4932}))
     expect("an exercise that its second way contradicts grades nobody", done.returncode == 3 and "the exercise is wrong in its part a" in done.stdout + done.stderr,
            done.stdout + done.stderr)  # fmt: skip
-    for several in ({"w2": 1, "w3": 2}, "-1.23, 0.806"):
+    for several in ({"w2": 1, "w3": 2}, "-1.23, 0.806, 3"):
         said = run("grade", "fourbar", write(folder, "two.json", {"d": several})).stdout
         expect(f"two entries written as {several} are asked for as a list", "entries asked for: 2; handed in: 1: write a list, [..., ...]" in said, said)
+    for text in ("-1.23, 0.806", "(-1.23, 0.806)", "-1.23 0.806", "-1.23; 0.806", "[-1.23, 0.806]"):
+        d = json.loads(run("grade", "fourbar", write(folder, "two.json", {"d": text}), "--json").stdout)["entries"]
+        expect(f"the text {text} is read as two entries", [e["given"] for e in d if e["name"].startswith("d.")] == ["-1.23", "0.806"], str(d))
+    options = [{"text": "yes", "right": True}, {"text": "no", "says": "this is wrong here"}]
+    ask = {"exercise": 2, "id": "ask", "title": "t", "lesson": "l", "section": "s", "statement": ["s"],
+           "parts": [{"id": "a", "ask": "?", "kind": "choice", "points": 1, "options": options}]}  # fmt: skip
+    marks = {form: [json.loads(run("grade", write(folder, "ask.json", ask), write(folder, "c.json", {"a": given}), "--json").stdout)["score"]
+                    for given in (letters[0], letters[1])]
+             for form, letters in {"a": ("a", "b"), "(a)": ("(a)", "(b)"), "[a]": (["a"], ["b"])}.items()}  # fmt: skip
+    expect("a choice without reasons is a letter, in brackets, or a list of one", sorted(marks["a"]) == [0, 1] and len({str(m) for m in marks.values()}) == 1, str(marks))
     said = run("grade", "method", write(folder, "method.json", {"a": "projecton@rk4:h=0.01"})).stdout
     expect("an unknown formulation is told with the nearest one, and without a list that is cut",
            "formulation 'projecton' is not known; did you mean 'projection'?" in said and ",;" not in said, said)  # fmt: skip

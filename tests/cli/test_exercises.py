@@ -3,6 +3,7 @@
 
 import glob
 import json
+import math
 import os
 import re
 import subprocess
@@ -30,6 +31,14 @@ def variants(_):
     expect("an exercise with formulas says how they are written, once",
            {name: (text.count("Formulas: "), text.count("Formulas of matrices: ")) for name, text in written.items()}
            == {"closure": (1, 0), "p1": (0, 1), "slips-1": (0, 0)}, str(written))  # fmt: skip
+    near = run("problem", "nul")
+    expect("a word of the title finds exercises", near.returncode == 2 and "exercises with 'nul' in their title: basis, gears, p2" in near.stderr, near.stderr)
+    forms = [json.loads(run("problem", "p3", *who, "--json").stdout)["submission"] for who in (["--seed", "42"], ["--student", "Ada"], [])]
+    expect("the shape of a submission names its variant first", [f[: f.index('"J"')] for f in forms] == ['{"seed": 42, ', '{"student": "Ada", ', "{"], str(forms))
+    expect("in the text too", '{"seed": 42, "J": ' in run("problem", "p3", "--seed", "42", "--wide").stdout)
+    listed = {p["id"]: p for p in json.loads(run("problems", "--json").stdout)["problems"]}
+    expect("an exercise that draws nothing says so", all(p["drawn"] for p in listed.values()) and listed["slips-1"]["drawn"] == "the order of the options", str(listed["slips-1"]))
+    expect("ranges are listed", listed["atwood"]["ranges"]["m1"] == {"range": [1, 3], "digits": 1, "unit": "kg"} and set(listed["p3"]["ranges"]) == set(listed["p3"]["varied"].split()), str(listed["p3"]))
     near = run("problem", "p11111")
     expect("an unknown exercise is the input's fault", near.returncode == 2, near.stderr)
 
@@ -43,6 +52,58 @@ def checks(_):
     expect("a range that is none is refused", bad.returncode == 2 and "9..1" in bad.stderr, bad.stderr)
 
 
+def proof(folder):
+    """The check prints what it proves."""
+    said = run("problem", "p3", "--seeds", "1..20", "--check", "--wide").stdout
+    apart = re.search(r"both means of J, .* agree to ([0-9.e-]+) of an entry's size at worst", said)
+    expect("both means of a matrix are compared", apart and 0 < float(apart[1]) < 1e-7 and "not checked: how near a mechanism comes to a singular" in said, said)
+    said = run("problem", "closure", "--seeds", "1..200", "--check", "--wide").stdout
+    report = json.loads(run("problem", "closure", "--seeds", "1..200", "--check", "--json").stdout)["parts"]
+    expect("draws, answers and both means of each part are told", all(f"both means of part {p} agree" in said for p in "abc") and "part d (choice)" in said
+           and "drawn again" in said and "right answers of part c: " in said and report["c"]["least"] < report["c"]["largest"]
+           and report["a"]["worst_difference"] < 1e-9, said)  # fmt: skip
+    with open("lessons/06-drift/problems/drift.json", encoding="utf-8") as f:
+        drift = json.load(f)
+    times = {str(json.loads(run("problem", "drift", "--seed", str(k), "--json").stdout)["numbers"]["tb"]) for k in range(1, 9)}
+    expect("the time of drift c differs from seed to seed", len(times) > 3 and "{tb}" in drift["parts"][2]["ask"], str(times))
+
+    # as many digits of the second means as differ
+    part = {"id": "a", "ask": "?", "kind": "number", "points": 1, "answer": "2*l", "second": "2*l*(1+1e-11)"}
+    mine = {"exercise": 2, "id": "mine", "title": "t", "lesson": "l", "section": "s", "statement": ["s"], "draw": {"l": {"range": [1, 2], "digits": 2}}}
+    worst = json.loads(run("problem", write(folder, "m.json", dict(mine, parts=[part])), "--check", "--json").stdout)["parts"]["a"]["worst_difference"]
+    expect("the worst difference is measured", 0.9e-11 < worst < 1.1e-11, str(worst))
+
+    # one line for a fault whose numbers differ; none is distinct where none is drawn
+    same = dict(part, second="l+l", faults=[{"id": "same", "answer": "2*l", "says": "this is right", "share": 0}])
+    done = run("problem", write(folder, "m.json", dict(mine, parts=[same])), "--seeds", "1..200", "--check", "--wide")
+    lines = [x for x in done.stdout.splitlines() if " seed" in x]
+    expect("a fault of every seed is one line", done.returncode == 3 and len(lines) == 1 and lines[0].startswith("  every seed; seed 1, part a: the mistake 'same' (")
+           and "more" not in done.stdout, done.stdout)  # fmt: skip
+    none = run("problem", write(folder, "m.json", dict(mine, conditions=["l-9"], parts=[part])), "--check").stdout
+    expect("variants that cannot be drawn are not distinct", "20 variants, 0 distinct" in none, none)
+
+
+def named_variant(folder):
+    """A file without a seed that is graded with one says as which variant."""
+    path = write(folder, "closure.json", {"c": 1})
+    notes = [json.loads(run("grade", "closure", write(folder, "c.json", {"c": 1, **who}), "--seed", "5", "--json").stdout)["note"] for who in ({}, {"seed": 5})]
+    expect("the variant is named where the file names none", "graded as that of seed 5" in notes[0] and notes[1] == "", str(notes))
+    bad = {"J": [["l1*sin(th1)", "-l2*sin(th2)", "l3*sin(th3)", "l4*cos(th4)"], ["l1*cos(th1)", "l2*cos(th2)", "-l3*cos(th3)", "-l4*cos(th4)"]]}
+    said = run("grade", "p3", "--seed", "42", write(folder, "bad.json", bad), "--wide").stdout
+    states = re.findall(r"at +(l1 = [^J]*?)(?=\n  \S|\ncompared)", said)
+    for entry, state in zip(("-l1*sin(th1)", "l4*sin(th4)"), states):
+        x = {k: float(v) for k, v in re.findall(r"(\w+) = ([-0-9.e]+)", state)}
+        expect(f"the state of {entry} closes the loop", abs(x["l1"] * math.cos(x["th1"]) + x["l2"] * math.cos(x["th2"]) - x["l3"] * math.cos(x["th3"]) - x["l4"] * math.cos(x["th4"])) < 1e-3, state)
+    given = [float(v) for v in re.findall(r"given .* = ([-0-9.]+),", said)]
+    x = {k: float(v) for k, v in re.findall(r"(\w+) = ([-0-9.e]+)", states[-1])}
+    expect("each wrong entry has its own state", len(states) == 2 and states[0] != states[1] and abs(given[1] - x["l4"] * math.cos(x["th4"])) < 1e-3, said)
+    expect("in 80 columns", all(len(line) <= 80 for state in states for line in ("at        " + state).splitlines()), said)
+    hidden = write(folder, "hidden.json", {"rubric": 1, "exercise": "closure", "visibility": {"d": "hidden"}})
+    for rubric, words in (([], "of 5"), (["--rubric", hidden], "of the 3 entries that are shown are right")):
+        said = json.loads(run("grade", "closure", path, "--format", "gradescope", *rubric).stdout)["output"]
+        expect(f"the summary of Gradescope: {words}", words in said, said)
+
+
 def bad_variants(folder):
     """Every bad variant is listed with its reason."""
     with open("lessons/09-space-and-drives/problems/count-space.json", encoding="utf-8") as f:
@@ -53,11 +114,11 @@ def bad_variants(folder):
     lines = [line.strip() for line in done.stdout.splitlines() if line.startswith("  seed ")]
     expect("every bad variant is listed", done.returncode == 3 and len(lines) == report["bad"] > 1 and all("'legs' (6) is named free" in line for line in lines), done.stdout)
     expect("and in JSON", report["bad_variants"].splitlines() == lines, str(report))
-    many = write(folder, "many.json", dict(exercise, conditions=["n-2.5"], parts=[dict(p, faults=[{"id": "none", "answer": p["answer"], "says": "right", "share": 0}])
+    many = write(folder, "many.json", dict(exercise, parts=[dict(p, faults=[{"id": "none", "answer": f"({p['answer']})+abs(n-10)-(n-10)", "says": "right", "share": 0}])
                                                                                   for p in exercise["parts"] if p["kind"] == "number"]))  # fmt: skip
     said = run("problem", many, "--seeds", "1..200", "--check").stdout
-    listed = said.count("\n  seed ")
-    expect("what does not fit is counted", 0 < listed < 200 and f"  and {200 - listed} more\n" in said, said[-300:])
+    listed, bad = said.count("\n  seed "), int(re.search(r"(\d+) variants are bad", said)[1])
+    expect("what does not fit is counted", 0 < listed < bad < 200 and "every seed" not in said and f"  and {bad - listed} more\n" in said, said[-300:])
 
 
 def choices(folder):
@@ -195,6 +256,14 @@ def the_guide_for_teachers(folder):
     done = run("problem", write(folder, "two.json", ramp), "--seeds", "1..50", "--check", "--json")
     expect("and so does its part with states", done.returncode == 0 and json.loads(done.stdout)["right_answers"] == 100, done.stdout + done.stderr)
 
+    third = text[text.index("    {\n", text.index("A part of the kind `choice` has")) :]
+    choice = json.loads(third[: third.index("\n    }\n") + 6])
+    done = run("problem", write(folder, "three.json", dict(ramp, parts=[*ramp["parts"], choice])), "--seeds", "1..50", "--check", "--json")
+    expect("and so does its choice", done.returncode == 0 and json.loads(done.stdout)["right_answers"] == 150, done.stdout + done.stderr)
+    step = re.search(r"write `(\{\"student\": .*?\})`", text)[1]
+    said = run("grade", write(folder, "ramp.json", dict(ramp, parts=ramp["parts"][:1])), write(folder, "answer.json", step)).stdout
+    expect("the wrong answer of step 5 is named", "this is the force along the ramp" in said and "score 0.5 of 1" in said, said)
+
     # a fault of the file is said once, with its line
     for change, said in (({"statement": ["{m} kg", "{len} m"]}, "every seed: {len} is no number that is drawn (line 9 of the file)"),
                          ({"hints": ["{=m*q} N"]}, "every seed: {=m*q} is no formula of the numbers that are drawn (line"),
@@ -221,7 +290,7 @@ def the_guide_for_teachers(folder):
 
 if __name__ == "__main__":
     sys.exit(speak_tap([
-        variants, checks, bad_variants, choices, own_exercise, broken_exercise,
+        variants, checks, proof, named_variant, bad_variants, choices, own_exercise, broken_exercise,
         unproven_exercise, notes_of_mistakes,
         the_guide_for_teachers,
     ]))

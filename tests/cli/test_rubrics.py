@@ -97,12 +97,12 @@ def rubrics(folder):
     # every kind of fault, with its line
     for what, change, said in (("part", {"points": {"bb": 1}}, "no part 'bb'"), ("mistake", {"shares": {"sgn": 1}}, "no mistake 'sgn'"),
                                ("field", {"hint": []}, "no field 'hint'"), ("total", {"total": 3}, "sum up to 12, not 3"),
-                               ("tolerance", {"tolerance": {"a": {"relative": 1e-12}}}, "below the error of the reference"),
+                               ("tolerance", {"tolerance": {"a": {"relative": 1e-12}}}, "tighter than that to which references are proved"),
                                ("share", {"shares": {"sign": 2}}, "from 0 to 1"), 
                                ("number", {"points": {"a": "x"}}, "needs a number")):  # fmt: skip
         text = json.dumps(dict(other, **change), indent=1)
         done = run("rubric", "check", write(folder, "bad.json", text))
-        line = re.search(r"line (\d+)", done.stderr)
+        line = re.search(rf"line (\d+): [^\n]*{re.escape(said)}", done.stderr)
         key = list(next(iter(change.values())))[0] if isinstance(next(iter(change.values())), dict) else next(iter(change))
         good = done.returncode == 2 and said in done.stderr and line and f'"{key}"' in text.splitlines()[int(line[1]) - 1]
         expect(f"a wrong {what} is named with its line", bool(good), done.stderr)
@@ -113,9 +113,11 @@ def whole_check(folder):
     bad = write(folder, "worst.json", json.dumps({"rubric": 1, "exercise": "fourbar", "hint": [], "points": {"bb": 1, "a": "x"},
                                                   "tolerance": {"a": {"relative": 1e-12}}, "shares": {"sgn": 1}, "total": 3}, indent=1))  # fmt: skip
     told = run("rubric", "check", bad).stderr
-    said = ["no field 'hint'", "no part 'bb'", "needs a number", "below the error", "no mistake 'sgn'", "sum up to"]
+    said = ["no field 'hint'", "no part 'bb'", "needs a number", "tighter than", "no mistake 'sgn'", "sum up to"]
     expect("all faults of a rubric are told at once", all(s in told for s in said), told)
     expect("each with its line", len(re.findall(r"line \d+: ", told)) >= 6, told)
+    lines = [int(n) for n in re.findall(r": line (\d+): ", told)]
+    expect("in the order of the lines", lines == sorted(lines), told)
     shapeless = os.path.join(folder, "shapeless.json")
     with open(shapeless, "w", encoding="utf-8") as f:
         f.write('{"rubric": 1, "exercise": "gears",\n "points": {"a": 1,\n  "foo": 1},\n "hints": ["x"],\n "foo": 5,\n "shares": [1],\n'

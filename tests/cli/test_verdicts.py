@@ -397,12 +397,12 @@ def outputs(folder):
 def files_of_others(folder):
     """A plot of this program is replaced, any other file of its name is kept, and what was written is named."""
     path = os.path.join(folder, "gp.svg")
-    first = os.path.join(folder, "gp-a.svg")
+    first = os.path.join(folder, "gp-ab.svg")
     with open(first, "w", encoding="utf-8") as f:
         f.write("mine")
     for _ in range(2):
-        done = run("problem", "gap-plot", "-o", path)
-        expect("the plots that were written are named", done.returncode == 0 and f"the plot of part a: {first}\n" in done.stdout, done.stdout)
+        done = run("problem", "motion-plot", "-o", path)
+        expect("the plots that were written are named", done.returncode == 0 and f"the plot of parts a and b: {first}\n" in done.stdout, done.stdout)
     with open(first + ".1", encoding="utf-8") as f:
         expect("a file of somebody else's is kept", f.read() == "mine")
     expect("and a plot is not", not os.path.exists(first + ".2"))

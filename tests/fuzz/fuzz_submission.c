@@ -37,7 +37,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     if (hn_exercise_load_json(text, size, &own, &diags) == HN_OK) {
         hn_strbuf b;
         hn_strbuf_init(&b);
-        hn_exercise_json(&b, own, 0);
+        hn_exercise_json(&b, own, 0, NULL);
         hn_fuzz_take_json(&b);
         hn_exercise_text(&b, own, 0, NULL);
         hn_strbuf_reset(&b);

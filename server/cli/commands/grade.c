@@ -151,6 +151,17 @@ static hn_exit write_failure(const task *t, const hn_exercise *exercise, const h
     return HN_EXIT_PROGRAM;
 }
 
+/// Says which variant --seed chose for a wrong answer whose file names none.
+static void remark_variant(const task *t, hn_verdict *v) {
+    if (v->unnamed && !t->args->student && t->subject.exercise->n_parts > 0 &&
+        v->kind == HN_VERDICT_GRADED && v->n_right < v->n_entries) {
+        hn_submission_remark(v,
+                             "the file names no variant: graded as that of seed %llu, as the "
+                             "command line says",
+                             (unsigned long long)v->seed);
+    }
+}
+
 static hn_exit grade_one(const task *t) {
     const double start = hn_clock_wall();
     hn_verdict *v = calloc(1, sizeof *v);
@@ -181,6 +192,7 @@ static hn_exit grade_one(const task *t) {
             }
             snprintf(v->student, sizeof v->student, "%s", t->args->student);
         }
+        remark_variant(t, v);
         v->show_expected = t->args->show_expected;
         result = write_result(t, v, hn_clock_wall() - start);
         result =

@@ -87,10 +87,10 @@ static const struct {
         {"points", "points", ""},
         {"minutes", "minutes", ""},
         {"limit [s]", "time_limit", ""},
-        {"drawn from the seed", "varied", NULL}},
+        {"drawn from the seed", "drawn", NULL}},
        "minutes: for a student who has read the lesson, estimated from the kinds of answers; "
        "limit: for grading one submission of a class. A run that a part asks for ends after "
-       "200,000 steps."}}},
+       "200,000 steps. Ranges of the numbers: 'holonom problems --json'"}}},
 };
 enum { N_LISTS = sizeof LISTS / sizeof *LISTS };
 

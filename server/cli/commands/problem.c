@@ -54,6 +54,63 @@ static void put_spread(hn_strbuf *b, const hn_exercise *e, const hn_exercise_rep
                              s->low, s->high, *unit ? " " : "", unit);
         }
     }
+    if (!e->n_parts) {
+        hn_strbuf_add(b, "  right answers: the same formulas for all; the numbers to try them on "
+                         "differ\n");
+    }
+}
+
+/// How well both means of each reference agree, and how a reference without two numbers is proved.
+static void put_agreement(hn_strbuf *b, const hn_exercise *e, const hn_exercise_report *r) {
+    if (!e->n_parts && r->spread[0].measured > 0) {
+        hn_strbuf_printf(b,
+                         "  both means of %s, the derivative and a central difference of phi, "
+                         "agree to %.2g of an entry's size at worst\n",
+                         e->answer, r->spread[0].apart);
+    }
+    for (int i = 0; i < e->n_parts; i++) {
+        const hn_part *p = &e->parts[i];
+        if (r->spread[i].measured > 0 && r->spread[i].apart == 0) {
+            hn_strbuf_printf(b, "  both means of part %s agree in every digit\n", p->id);
+        } else if (r->spread[i].measured > 0) {
+            hn_strbuf_printf(b, "  both means of part %s agree to %.2g of the value at worst\n",
+                             p->id, r->spread[i].apart);
+        } else if (r->rights > 0) {
+            hn_strbuf_printf(b, "  part %s (%s): %s; no difference is measured\n", p->id,
+                             hn_part_text(p->node, "kind"),
+                             p->kind->prove ? "the test of its kind confirms the reference"
+                                            : "the reference is graded like an answer");
+        }
+    }
+}
+
+/// Returns whether a mechanism is assembled, drawn or moved.
+static bool has_mechanism(const hn_exercise *e) {
+    bool has = !e->n_parts || cJSON_GetObjectItemCaseSensitive(e->root, "picture") != NULL;
+    for (int i = 0; i < e->n_parts; i++) {
+        has |= cJSON_GetObjectItemCaseSensitive(e->parts[i].node, "scene") != NULL;
+    }
+    return has;
+}
+
+/// The same of each part as members; of a matrix of formulas under its name.
+static void put_parts(hn_strbuf *b, const hn_exercise *e, const hn_exercise_report *r) {
+    hn_json_key(b, "parts");
+    hn_json_object(b);
+    for (int i = 0; i < (e->n_parts ? e->n_parts : 1); i++) {
+        const hn_answer_spread *s = &r->spread[i];
+        hn_json_key(b, e->n_parts ? e->parts[i].id : e->answer);
+        hn_json_object(b);
+        if (s->n > 0) {
+            hn_json_put_number(b, "least", s->low);
+            hn_json_put_number(b, "largest", s->high);
+        }
+        if (s->measured > 0) {
+            hn_json_put_number(b, "worst_difference", s->apart);
+        }
+        hn_json_end_object(b);
+    }
+    hn_json_end_object(b);
 }
 
 static void put_report(hn_strbuf *b, const hn_exercise *e, const hn_exercise_report *r, int json) {
@@ -67,6 +124,7 @@ static void put_report(hn_strbuf *b, const hn_exercise *e, const hn_exercise_rep
         hn_json_put_int(b, "mistakes", r->faults);
         hn_json_put_string(b, "first_fault", r->first);
         hn_json_put_string(b, "bad_variants", r->list);
+        put_parts(b, e, r);
         hn_json_end_object(b);
         return;
     }
@@ -83,6 +141,11 @@ static void put_report(hn_strbuf *b, const hn_exercise *e, const hn_exercise_rep
         hn_strbuf_printf(b, "  and %lld more\n", r->bad - listed);
     }
     put_spread(b, e, r);
+    put_agreement(b, e, r);
+    if (has_mechanism(e)) {
+        hn_strbuf_add(b, "  not checked: how near a mechanism comes to a singular configuration; "
+                         "a condition keeps it away\n");
+    }
     hn_rubric_put_mistakes(b, e);
 }
 
@@ -257,7 +320,7 @@ static hn_exit print_matrix_exercise(const hn_args *args, const hn_exercise *e) 
     hn_strbuf_init(&b);
     const uint64_t seed = hn_cli_variant_seed(args, e);
     if (args->json) {
-        hn_exercise_json(&b, e, seed);
+        hn_exercise_json(&b, e, seed, args->student);
     } else {
         hn_exercise_text(&b, e, seed, args->student);
     }

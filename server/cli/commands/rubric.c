@@ -38,6 +38,7 @@ static hn_status load(const hn_library *lib, const char *path, const char *word,
         status = status == HN_OK ? fits : status;
     }
     HN_THEN(status, hn_rubric_apply(*rubric, *e, diags));
+    hn_rubric_sort_faults(diags);
     hn_diags_name_file(diags, 0, path);
     return status;
 }
@@ -135,6 +136,7 @@ hn_status hn_cli_apply_rubric(const hn_args *args, hn_exercise *exercise, hn_dia
     }
     hn_status status = hn_rubric_load_file(args->rubric, &rubric, diags);
     HN_THEN(status, hn_rubric_apply(rubric, exercise, diags));
+    hn_rubric_sort_faults(diags);
     hn_diags_name_file(diags, 0, args->rubric);
     if (status != HN_OK) {
         hn_rubric_free(rubric);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "grade/list_text.h"
+#include "grade/parts/list_text.h"
 
 #include <ctype.h>
 #include <stdbool.h>

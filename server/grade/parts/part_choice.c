@@ -113,12 +113,13 @@ static cJSON *read_pair(const cJSON *given) {
     const char *text = cJSON_GetStringValue(given);
     char letters[2];
     const bool two = text && split_letters(text, letters) == 2;
-    const bool list = cJSON_IsArray(given) && cJSON_GetArraySize(given) == 2;
+    const int n = cJSON_IsArray(given) ? cJSON_GetArraySize(given) : 0;
+    const bool list = n == 1 || n == 2; // of one: the choice alone
     cJSON *out = cJSON_CreateObject();
     for (int i = 0; i < 2 && out; i++) {
         const char letter[] = {two ? letters[i] : '\0', '\0'};
         cJSON *value = cJSON_IsObject(given) ? cJSON_Duplicate(find_member(given, names[i]), 1)
-                       : list                ? cJSON_Duplicate(cJSON_GetArrayItem(given, i), 1)
+                       : list && i < n       ? cJSON_Duplicate(cJSON_GetArrayItem(given, i), 1)
                        : two                 ? cJSON_CreateString(letter)
                        : text && i == 0      ? cJSON_CreateString(text)
                                              : NULL;
@@ -200,7 +201,9 @@ static hn_status grade(const hn_part *p, const cJSON *given, hn_part_result *res
     if (*n == 2) {
         return grade_pair(p, given, results, diag);
     }
-    const cJSON *choice = cJSON_IsObject(given) ? find_member(given, "choice") : given;
+    const cJSON *choice = cJSON_IsObject(given)            ? find_member(given, "choice")
+                          : cJSON_GetArraySize(given) == 1 ? cJSON_GetArrayItem(given, 0)
+                                                           : given;
     return grade_list(p, "options", choice ? choice : given, &results[0], diag);
 }
 

@@ -165,15 +165,28 @@ static bool find_slip(const sheet *s, double value, slip *out) {
 
 // ---- the functions of the kind ----
 
+/// Returns the fewest digits, two at least, with which two numbers are printed differently.
+static int count_telling_digits(double a, double b) {
+    char one[32], other[32];
+    int digits = 1;
+    do {
+        digits++;
+        snprintf(one, sizeof one, "%.*g", digits, a);
+        snprintf(other, sizeof other, "%.*g", digits, b);
+    } while (strcmp(one, other) == 0 && digits < 15);
+    return digits;
+}
+
 static void judge(const sheet *s, double value, hn_part_result *r) {
     slip found;
     const double apart = fabs(value - s->answer);
     if (apart <= s->allowed) {
         hn_part_right(r);
     } else if (apart <= COARSE * s->allowed) {
+        const int digits = count_telling_digits(apart * s->factor, s->allowed * s->factor);
         hn_part_wrong(r, "inexact", 0.5,
-                      "near, but read too coarsely: %.2g %s away, %.2g %s are allowed",
-                      apart * s->factor, s->unit, s->allowed * s->factor, s->unit);
+                      "near, but read too coarsely: %.*g %s away, %.*g %s are allowed", digits,
+                      apart * s->factor, s->unit, digits, s->allowed * s->factor, s->unit);
     } else if (find_slip(s, value, &found)) {
         hn_part_wrong(r,
                       !strcmp(found.id, "sign")           ? "sign"

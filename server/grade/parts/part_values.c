@@ -3,8 +3,8 @@
 // with it at the numbers of the variant (number, vector), or at random states (formula, formulas).
 // A wrong entry is compared with the mistakes that the exercise lists, then with those that every
 // formula invites.
+#include "grade/parts/list_text.h"
 #include "grade/parts/part_list.h"
-
 #include "grade/parts/spelling.h"
 #include "grade/parts/value_entry.h"
 #include "grade/parts/value_likeness.h"
@@ -109,6 +109,36 @@ static const char *shape_advice(const cJSON *given) {
     return one ? ": write a list, [..., ...]" : "";
 }
 
+/// Reads "-0.399, 0.950", a list without its brackets, or one in round brackets; owned. NULL: it
+/// is no text, or one that does not have the number of entries that is asked for.
+static cJSON *read_bare_list(const hn_value_sheet *s, const cJSON *given) {
+    const char *text = cJSON_GetStringValue(given);
+    if (!text || s->reference.n < 2) {
+        return NULL;
+    }
+    hn_strbuf b;
+    hn_strbuf_init(&b);
+    const size_t n = strlen(text);
+    const bool round = n > 1 && text[0] == '(' && strchr(text, ')') == text + n - 1;
+    hn_strbuf_add(&b, "[");
+    hn_strbuf_add_n(&b, text + round, n - 2 * (size_t)round);
+    hn_strbuf_add(&b, "]");
+    cJSON *list = hn_list_text_read(hn_strbuf_text(&b)), *m;
+    bool fits = list && cJSON_GetArraySize(list) == s->reference.n;
+    hn_strbuf_reset(&b);
+
+    // each entry as it stands between two marks; between semicolons in a row of its own
+    cJSON_ArrayForEach(m, list) {
+        const cJSON *one = cJSON_GetArraySize(m) == 1 ? m->child : m;
+        fits &= cJSON_IsNumber(one) || (cJSON_IsString(one) && one->valuestring[0]);
+    }
+    if (!fits) {
+        cJSON_Delete(list);
+        return NULL;
+    }
+    return list;
+}
+
 static hn_status grade_sheet(hn_value_sheet *s, const cJSON *given, hn_part_result *results,
                              int *n) {
     const cJSON *list[HN_VALUE_ENTRIES];
@@ -151,7 +181,9 @@ static hn_status grade(const hn_part *p, const cJSON *given, hn_part_result *res
     hn_draw draw;
     hn_status status = hn_value_open(&s, p, &draw, diag);
     if (status == HN_OK) {
-        status = grade_sheet(&s, given, results, n);
+        cJSON *bare = read_bare_list(&s, given);
+        status = grade_sheet(&s, bare ? bare : given, results, n);
+        cJSON_Delete(bare);
     }
     hn_draw_reset(&draw);
     return status;
@@ -217,6 +249,35 @@ static cJSON *fault(const hn_part *p, int i, const char **id, hn_diag *diag) {
     }
     hn_draw_reset(&draw);
     return out;
+}
+
+/// The largest difference of both means, as a share of the value; below 1 of its unit.
+static double find_worst(const hn_value_sheet *s, const hn_values *second) {
+    double worst = 0;
+    for (int k = 0; k < s->reference.n; k++) {
+        for (int i = 0; i < s->draw->n_states; i++) {
+            const double x = s->reference.x[k][i], y = second->x[k][i];
+            worst = fmax(worst, fabs(x - y) / fmax(fabs(x), 1));
+        }
+    }
+    return worst;
+}
+
+double hn_value_worst_difference(const hn_part *p) {
+    hn_value_sheet s;
+    hn_draw draw;
+    hn_values second = {0};
+    hn_diag diag;
+    const cJSON *node = cJSON_GetObjectItemCaseSensitive(p->node, "second");
+    hn_status status = p->kind == &hn_part_values && node ? HN_OK : HN_ERR_UNSUPPORTED;
+    if (status != HN_OK) {
+        return (double)NAN;
+    }
+    status = hn_value_open(&s, p, &draw, &diag);
+    HN_THEN(status, hn_value_read(&s, node, &s.reference, &second));
+    const double worst = status == HN_OK ? find_worst(&s, &second) : (double)NAN;
+    hn_draw_reset(&draw);
+    return worst;
 }
 
 /// The formulas of "second" have the values of the reference.

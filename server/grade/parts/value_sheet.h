@@ -32,6 +32,10 @@ typedef struct hn_value_sheet {
 
 /// 1 for the kinds formula and formulas.
 int hn_value_is_symbolic(const hn_part *p);
+/// The largest difference between the values of "answer" and of "second" over the states, as a
+/// share of the value, or of 1 where that is smaller; NaN: the kind of the part has no "second", or
+/// a form cannot be evaluated.
+double hn_value_worst_difference(const hn_part *p);
 /// Returns the difference that a tolerance allows in an entry, of a matrix or of a part: the larger
 /// of `absolute` and `relative` times `size`, the entry's largest value over the states.
 double hn_value_allowed(double relative, double absolute, double size);

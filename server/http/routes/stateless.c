@@ -294,7 +294,7 @@ void hn_handle_problem(hn_request *r) {
         } else if (problem->n_parts) {
             hn_variant_json(&b, &x);
         } else {
-            hn_exercise_json(&b, problem, 0);
+            hn_exercise_json(&b, problem, 0, NULL);
         }
         hn_variant_reset(&x);
         hn_reply_json(r, MHD_HTTP_OK, &b);

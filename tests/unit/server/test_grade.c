@@ -446,7 +446,7 @@ static void the_statement_says_that_the_ground_is_held_and_how_to_hand_in(void *
     assert_non_null(
         strstr(hn_strbuf_text(&b), "{\"J\": [[\"...\", \"...\", \"...\", \"...\"], [\"...\""));
     hn_strbuf_clear(&b);
-    hn_exercise_json(&b, *state, 0);
+    hn_exercise_json(&b, *state, 0, NULL);
     cJSON *root = parse(&b);
     assert_near(number_of(root, "points"), 8, 0);
     assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItemCaseSensitive(root, "entries")), 8);
@@ -460,7 +460,7 @@ static void each_variant_has_numbers_that_close_the_loop_and_a_velocity_of_j(voi
         double l[4], c[4], s[4], v[4], phi[2] = {0, 0}, jv[2] = {0, 0}, size = 0;
         hn_strbuf b;
         hn_strbuf_init(&b);
-        hn_exercise_json(&b, *state, seed);
+        hn_exercise_json(&b, *state, seed, NULL);
         cJSON *root = parse(&b);
         const cJSON *numbers = cJSON_GetObjectItemCaseSensitive(root, "numbers");
         for (int i = 0; i < 4; i++) {

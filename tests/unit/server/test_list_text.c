@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Matrices that were pasted as one text from a program.
-#include "grade/list_text.h"
+#include "grade/parts/list_text.h"
 
 #include "support/near.h"
 
