@@ -23,6 +23,9 @@ def readings(folder):
             (("right", right + 0.9 * allowed), ("coarse", right + 1.5 * allowed), ("time", 10.0), ("metres", right / 1000))}  # fmt: skip
     expect("a coarse reading is not taken for a value of the other axis",
            told == {"right": "", "coarse": "inexact", "time": "other-axis", "metres": "power-of-ten"}, str(told))  # fmt: skip
+    said = entry(right + 1.001 * allowed)["explanation"]
+    numbers = re.search(r"coarsely: ([\d.e+-]+) mm away, ([\d.e+-]+) mm are allowed", said)
+    expect("a reading just outside has digits that show it", numbers and float(numbers[1]) > float(numbers[2]), said)
 
 
 def rates_of_a_part(folder):
