@@ -60,6 +60,10 @@ static void put_spread(hn_strbuf *b, const hn_exercise *e, const hn_exercise_rep
     }
 }
 
+static bool is_choice(const hn_part *p) {
+    return strcmp(hn_part_text(p->node, "kind"), "choice") == 0;
+}
+
 /// How well both means of each reference agree, and how a reference without two numbers is proved.
 static void put_agreement(hn_strbuf *b, const hn_exercise *e, const hn_exercise_report *r) {
     if (!e->n_parts && r->spread[0].measured > 0) {
@@ -76,10 +80,12 @@ static void put_agreement(hn_strbuf *b, const hn_exercise *e, const hn_exercise_
             hn_strbuf_printf(b, "  both means of part %s agree to %.2g of the value at worst\n",
                              p->id, r->spread[i].apart);
         } else if (r->rights > 0) {
-            hn_strbuf_printf(b, "  part %s (%s): %s; no difference is measured\n", p->id,
+            hn_strbuf_printf(b, "  part %s (%s): %s; no difference to measure\n", p->id,
                              hn_part_text(p->node, "kind"),
-                             p->kind->prove ? "the test of its kind confirms the reference"
-                                            : "the reference is graded like an answer");
+                             is_choice(p) ? "the author marks the right option, and every wrong "
+                                            "one says why"
+                             : p->kind->prove ? "the test of its kind confirms the reference"
+                                              : "the reference is graded like an answer");
         }
     }
 }

@@ -113,13 +113,12 @@ static cJSON *read_pair(const cJSON *given) {
     const char *text = cJSON_GetStringValue(given);
     char letters[2];
     const bool two = text && split_letters(text, letters) == 2;
-    const int n = cJSON_IsArray(given) ? cJSON_GetArraySize(given) : 0;
-    const bool list = n == 1 || n == 2; // of one: the choice alone
+    const bool list = cJSON_IsArray(given) && cJSON_GetArraySize(given) == 2;
     cJSON *out = cJSON_CreateObject();
     for (int i = 0; i < 2 && out; i++) {
         const char letter[] = {two ? letters[i] : '\0', '\0'};
         cJSON *value = cJSON_IsObject(given) ? cJSON_Duplicate(find_member(given, names[i]), 1)
-                       : list && i < n       ? cJSON_Duplicate(cJSON_GetArrayItem(given, i), 1)
+                       : list                ? cJSON_Duplicate(cJSON_GetArrayItem(given, i), 1)
                        : two                 ? cJSON_CreateString(letter)
                        : text && i == 0      ? cJSON_CreateString(text)
                                              : NULL;

@@ -132,17 +132,20 @@ static void a_choice_without_reasons_is_a_letter_or_a_member(void **state) {
     assert_int_equal(hn_exercise_load_json(one, strlen(one), &e, &diags), HN_OK);
     int n_right = 0;
     for (int i = 0; i < 2; i++) {
-        char plain[40], member[60];
+        char plain[40], member[60], list[40];
         snprintf(plain, sizeof plain, "{\"a\":\"(%c)\"}", 'a' + i);
         snprintf(member, sizeof member, "{\"a\":{\"Choice\":\"%c\"}}", 'A' + i);
+        snprintf(list, sizeof list, "{\"a\":[\"%c\"]}", 'a' + i);
         assert_true(verdict_on(e, plain)->n_entries == 1);
         const int right = verdict_on(e, plain)->n_right;
         assert_int_equal(verdict_on(e, member)->n_right, right);
+        assert_int_equal(verdict_on(e, list)->n_right, right);
         n_right += right;
     }
     assert_int_equal(n_right, 1);
-    assert_string_equal(verdict_on(e, "{\"a\":[\"a\"]}")->hint,
-                        "the choice '[\"a\"]' is not one letter from a to b, in quotes: \"a\"");
+    assert_string_equal(
+        verdict_on(e, "{\"a\":[\"a\",\"b\"]}")->hint,
+        "the choice '[\"a\",\"b\"]' is not one letter from a to b, in quotes: \"a\"");
     hn_exercise_free(e);
 }
 
