@@ -136,6 +136,10 @@ static hn_status compute_by(making *m, const char *means, const hn_walk_limits *
     return status;
 }
 
+/// [s] A means that had less was not tried. Another one in its place would make the numbers depend
+/// on the time limit; a run that goes on tries the same again.
+static const double LEAST_TRIAL = 0.1;
+
 static hn_status compute(making *m, const hn_walk_limits *limits, hn_diag *diag) {
     hn_stability_path *p = m->path;
     hn_status status = HN_ERR_INTERNAL;
@@ -143,7 +147,9 @@ static hn_status compute(making *m, const hn_walk_limits *limits, hn_diag *diag)
         hn_walk_limits own = *limits;
         own.seconds *= k < N_MEANS - 1 ? FIRST_SHARE : 1;
         status = compute_by(m, MEANS[k], &own, diag);
-        if (status == HN_OK || (limits->stop && limits->stop(limits->user))) {
+        const bool untried =
+            status == HN_ERR_STOPPED && own.seconds > 0 && own.seconds < LEAST_TRIAL;
+        if (status == HN_OK || untried || (limits->stop && limits->stop(limits->user))) {
             break;
         }
     }
