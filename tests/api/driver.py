@@ -144,10 +144,12 @@ class Server:
         return answer.json()
 
     def stop(self, how=signal.SIGTERM):
-        """Ends it; its exit status. The words of a sanitiser are in `errors`."""
+        """Ends it; its exit status. The words of a sanitiser are in `errors`, and are printed where a signal ended it that was not sent."""
         self.process.send_signal(how)
         status = self.process.wait(timeout=30 * SLOW)
         self.reader.join(timeout=5)
+        if status < 0 and status != -how:
+            print("".join(self.errors), file=sys.stderr)
         self.process.stdout.close()
         self.process.stderr.close()
         return status
