@@ -289,6 +289,15 @@ test("S11 L makes a link that opens the same frame with the same digits; a bad e
   await soon(async () => assert.deepEqual(await read(other, states), await read(page, states)));
   const bad = await open(t, { hash: hash.replace("selected=0", "selected=x") });
   await until(bad, (data) => /the link: .*selected/.test(data.notice));
+
+  // the build is that which the server names; another one, even of the same version, is told
+  const { build, version } = await (await fetch(new URL("/api/v1/healthz", bench.url))).json();
+  assert.notEqual(build, version);
+  const own = `build=${encodeURIComponent(build)}`;
+  assert.ok(hash.includes(own), hash);
+  const another = `build=${encodeURIComponent(`${version} of another day`)}`;
+  const differing = await open(t, { hash: hash.replace(own, another) });
+  await until(differing, (data) => /made by build .* of another day/.test(data.notice));
 });
 
 test("S12 the exported Python checks itself, or says on its first line what it lacks", async (t) => {

@@ -216,7 +216,7 @@ export function createSceneActions(store, exchange, notice) {
         api.lessons(),
       ]);
       readIndex(index);
-      data.build = index.version ?? index.build ?? "";
+      data.build = index.build;
       data.look = look;
       data.catalogue = catalogue;
       data.scenes = list.scenes.filter((scene) => !scene.errors);
