@@ -21,7 +21,6 @@
     X(MHD_get_response_header)           \
     X(MHD_lookup_connection_value)       \
     X(MHD_queue_response)                \
-    X(MHD_quiesce_daemon)                \
     X(MHD_resume_connection)             \
     X(MHD_start_daemon)                  \
     X(MHD_stop_daemon)                   \
@@ -50,7 +49,6 @@ HN_MUST_CHECK hn_status hn_microhttpd_load(hn_diag *diag);
 #define MHD_get_response_header hn_microhttpd_functions.MHD_get_response_header
 #define MHD_lookup_connection_value hn_microhttpd_functions.MHD_lookup_connection_value
 #define MHD_queue_response hn_microhttpd_functions.MHD_queue_response
-#define MHD_quiesce_daemon hn_microhttpd_functions.MHD_quiesce_daemon
 #define MHD_resume_connection hn_microhttpd_functions.MHD_resume_connection
 #define MHD_start_daemon hn_microhttpd_functions.MHD_start_daemon
 #define MHD_stop_daemon hn_microhttpd_functions.MHD_stop_daemon

@@ -178,9 +178,11 @@ int hn_server_port(const hn_server *server) {
 }
 
 void hn_server_stop(hn_server *s) {
+    // New connections are still taken, and told that the server ends. MHD_quiesce_daemon would
+    // refuse them, but the library (0.9.75) aborts the program there when one of its event loops
+    // wakes at that moment: both take the listening socket out of the loop's set.
     hn_context *c = &s->context;
     atomic_store(&c->stopping, 1);
-    int fd = s->daemon ? MHD_quiesce_daemon(s->daemon) : -1;
 
     // all are told before anybody is waited for, so that they end at the same time
     if (c->runs) {
@@ -202,10 +204,7 @@ void hn_server_stop(hn_server *s) {
         nanosleep(&(struct timespec){.tv_nsec = DRAIN_NS}, NULL);
     }
     if (s->daemon) {
-        MHD_stop_daemon(s->daemon);
-    }
-    if (fd >= 0) {
-        close(fd);
+        MHD_stop_daemon(s->daemon); // closes the listening socket too
     }
 
     // streams gave back their places when the daemon ended
