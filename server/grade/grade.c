@@ -8,6 +8,7 @@
 #include "grade/exam.h"
 #include "grade/mistakes.h"
 #include "grade/other_variant.h"
+#include "grade/parts/comma_list.h"
 #include "grade/parts/list_text.h"
 #include "grade/parts/read_as.h"
 #include "grade/parts/spelling.h"
@@ -331,11 +332,28 @@ static hn_status grade_parts(hn_verdict *v, const cJSON *root) {
     return status;
 }
 
-/// Reads matrices that were pasted as one text, with a remark.
+/// Replaces texts that hold as many numbers with decimal commas as their part asks for by lists.
+/// Returns how many; name: that of the first one.
+static int expand_comma_lists(const hn_exercise *p, cJSON *root, char *name, size_t size) {
+    int n = 0;
+    for (int i = 0; i < p->n_parts && cJSON_IsObject(root); i++) {
+        const char *id = p->parts[i].id;
+        const char *text = cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(root, id));
+        cJSON *list = text ? hn_comma_list_read(text, hn_part_numbers_asked(&p->parts[i])) : NULL;
+        if (list && cJSON_ReplaceItemInObjectCaseSensitive(root, id, list)) {
+            snprintf(name, n ? 0 : size, "%s", id);
+            n++;
+        }
+    }
+    return n;
+}
+
+/// Reads matrices and lists that were pasted as one text, with a remark.
 static void expand_lists(hn_verdict *v, cJSON *root) {
-    char name[40], more[40] = "";
-    int n_empty;
-    const int n = hn_list_text_expand(root, name, sizeof name, &n_empty);
+    char name[40], other[40], more[40] = "";
+    int n_empty, n = expand_comma_lists(v->problem, root, name, sizeof name);
+    const int n_others = hn_list_text_expand(root, n ? other : name, sizeof name, &n_empty);
+    n += n_others;
     if (n > 1) {
         snprintf(more, sizeof more, ", and %d more likewise", n - 1);
     }

@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MAX_CHARS = 1000, MAX_DEPTH = 40, MAX_NAME = 32 };
+enum { MAX_CHARS = 1000, MAX_DEPTH = 40, MAX_NAME = 32, LONGEST_SHOWN = 60 };
 
 typedef struct parser {
     const char *start, *at;
@@ -455,11 +455,39 @@ static hn_status join(parser *p, joint how, const hn_matrix *a, const hn_matrix 
     }
 }
 
+/// A stretch of the formula, without blanks at its ends.
+typedef struct span {
+    const char *at;
+    int n;
+} span;
+
+static span make_span(const char *at, const char *end) {
+    at += strspn(at, " ");
+    while (end > at && end[-1] == ' ') {
+        end--;
+    }
+    return (span){at, (int)(end - at)};
+}
+
+/// Says which two operands have shapes that do not fit; `what` cannot be done with them.
+static hn_status name_operands(parser *p, hn_status status, span a, const hn_matrix *left, span b,
+                               const hn_matrix *right, const char *what) {
+    if (status != HN_ERR_UNSUPPORTED || a.n > LONGEST_SHOWN || b.n > LONGEST_SHOWN) {
+        return status;
+    }
+    return hn_diag_set(p->desk.diag, status, NULL, "a factor or a transpose may be missing",
+                       "%.*s is %d x %d and %.*s is %d x %d: they cannot be %s", a.n, a.at,
+                       left->rows, left->cols, b.n, b.at, right->rows, right->cols, what);
+}
+
 static hn_status read_product(parser *p, hn_matrix *out) {
     hn_matrix left, right;
+    const char *start = p->at;
     HN_TRY(read_signed(p, &left));
     for (;;) {
+        const char *end = p->at;
         const joint how = read_joint(p);
+        const char *next = p->at;
         if (how == END) {
             *out = left;
             return HN_OK;
@@ -472,23 +500,31 @@ static hn_status read_product(parser *p, hn_matrix *out) {
             [PRODUCT] = "*", [BESIDE] = "*", [ENTRIES] = ".*", [QUOTIENT] = "/", [SOLVE] = "\\"};
         note(p, signs[how]);
         HN_TRY(how == BESIDE ? read_factor(p, &right) : read_signed(p, &right));
-        HN_TRY(join(p, how, &left, &right, out));
+        const hn_status status = join(p, how, &left, &right, out);
+        HN_TRY(how == SOLVE ? status
+                            : name_operands(p, status, make_span(start, end), &left,
+                                            make_span(next, p->at), &right, "multiplied"));
         left = *out;
     }
 }
 
 static hn_status read_sum(parser *p, hn_matrix *out) {
     hn_matrix left, right;
+    const char *start = p->at;
     HN_TRY(read_product(p, &left));
     for (;;) {
+        const char *end = p->at;
         const bool plus = take_any(p, PLUS), minus = !plus && take_any(p, MINUS);
+        const char *next = p->at;
         if (!plus && !minus) {
             *out = left;
             return HN_OK;
         }
         note(p, plus ? " + " : " - ");
         HN_TRY(read_product(p, &right));
-        HN_TRY(hn_matrix_add(&p->desk, &left, &right, plus ? 1 : -1, out));
+        const hn_status status = hn_matrix_add(&p->desk, &left, &right, plus ? 1 : -1, out);
+        HN_TRY(name_operands(p, status, make_span(start, end), &left, make_span(next, p->at),
+                             &right, plus ? "added" : "subtracted"));
         left = *out;
     }
 }

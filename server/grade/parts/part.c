@@ -89,6 +89,18 @@ const cJSON *hn_part_member(const cJSON *answer, const char *name) {
     return m;
 }
 
+int hn_part_numbers_asked(const hn_part *p) {
+    static const struct {
+        const char *kind, *list;
+    } ROWS[] = {{"vector", "answer"}, {"configuration", "asked"}};
+    for (size_t i = 0; i < sizeof ROWS / sizeof *ROWS; i++) {
+        if (strcmp(hn_part_text(p->node, "kind"), ROWS[i].kind) == 0) {
+            return cJSON_GetArraySize(cJSON_GetObjectItemCaseSensitive(p->node, ROWS[i].list));
+        }
+    }
+    return 0;
+}
+
 const cJSON *hn_part_fault_at(const hn_part *p, int i) {
     return cJSON_GetArrayItem(cJSON_GetObjectItemCaseSensitive(p->node, "faults"), i);
 }

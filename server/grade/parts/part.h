@@ -101,6 +101,8 @@ void hn_part_qualify(hn_part_result *results, int n);
 /// The member of an answer with this name, or else the first one in another spelling of it (θ2,
 /// theta_2 for th2); NULL: none.
 const cJSON *hn_part_member(const cJSON *answer, const char *name);
+/// How many numbers the answer is, where it is a list of numbers; otherwise 0.
+int hn_part_numbers_asked(const hn_part *p);
 /// The i-th object of "faults"; NULL after the last.
 const cJSON *hn_part_fault_at(const hn_part *p, int i);
 const char *hn_part_text(const cJSON *node, const char *key); ///< "" when there is none

@@ -4,14 +4,17 @@
 #include "grade/parts/part_list.h"
 #include "grade/parts/read_as.h"
 
+#include "expr/construct.h"
+#include "expr/diff.h"
 #include "grade/parts/spelling.h"
 #include "linalg/svd.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
-enum { STATES = 8, MAX_SIZE = 8 };
+enum { STATES = 8, MAX_SIZE = 8, MAX_ORDERED = 5 };
 static const double ALLOWED = 1e-6; // of the sizes of J and N: constants with seven digits pass
 
 /// Rows of formulas.
@@ -134,27 +137,148 @@ static int find_sign(hn_draw *d, const table *J, const table *N) {
     return -1;
 }
 
+/// Returns whether N is a basis once the factor between degrees and radians of its angles is
+/// taken away.
+static bool is_in_degrees(hn_draw *d, const table *J, const table *N) {
+    static const double FACTORS[] = {57.29577951308232, 0.017453292519943295};
+    hn_graph *g = d->graph;
+    int names[HN_DRAW_NAMES], n = 0;
+    for (int i = 0; i < d->n_names; i++) {
+        names[n] = i;
+        n += hn_draw_is_angle(d, i);
+    }
+    for (size_t k = 0; k < sizeof FACTORS / sizeof *FACTORS; k++) {
+        hn_ex with[HN_DRAW_NAMES];
+        table turned = *N;
+        for (int i = 0; i < n; i++) {
+            with[i] = hn_scale(FACTORS[k], hn_graph_symbol_expr(g, names[i]));
+        }
+        for (int i = 0; i < N->rows; i++) {
+            hn_substitute(g, N->e[i], N->cols, names, with, n, turned.e[i]);
+        }
+        if (worst_residual(d, J, &turned, 0) <= ALLOWED) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/// Finds the order of rows in which N is a basis: row i of it is row order[i] of N. False: none.
+static bool find_order(hn_draw *d, const table *J, const table *N, int place, int order[MAX_SIZE]) {
+    for (int row = 0; row < N->rows && place < N->rows; row++) {
+        bool free = true;
+        for (int i = 0; i < place; i++) {
+            free &= order[i] != row;
+        }
+        order[place] = row;
+        if (free && find_order(d, J, N, place + 1, order)) {
+            return true;
+        }
+    }
+    if (place < N->rows) {
+        return false;
+    }
+    table moved = *N;
+    for (int i = 0; i < N->rows; i++) {
+        memcpy(moved.e[i], N->e[order[i]], sizeof moved.e[i]);
+    }
+    return worst_residual(d, J, &moved, 0) <= ALLOWED;
+}
+
+/// Returns whether J N is 0 in one state once row i of N is replaced by what fits the other rows.
+static bool others_fit(hn_draw *d, const table *J, const table *N, int i, int state) {
+    double j[MAX_SIZE * MAX_SIZE], n[MAX_SIZE * MAX_SIZE], size_j = 0, size_n = 0, rest = 0;
+    evaluate(d, J, state, j);
+    evaluate(d, N, state, n);
+    for (int c = 0; c < N->cols; c++) {
+        double sum[MAX_SIZE] = {0}, along = 0, square = 0;
+        for (int k = 0; k < J->rows; k++) {
+            for (int m = 0; m < J->cols; m++) {
+                sum[k] += m == i ? 0 : j[k * J->cols + m] * n[m * N->cols + c];
+                size_j = fmax(size_j, fabs(j[k * J->cols + m]));
+                size_n = fmax(size_n, fabs(n[m * N->cols + c]));
+            }
+            along -= sum[k] * j[k * J->cols + i];
+            square += j[k * J->cols + i] * j[k * J->cols + i];
+        }
+        for (int k = 0; k < J->rows && square > 0; k++) {
+            rest = fmax(rest, fabs(sum[k] + along / square * j[k * J->cols + i]));
+        }
+    }
+    return rest <= ALLOWED * size_j * size_n;
+}
+
+/// The one row that does not fit the others, as their J N can be made 0 by it alone; -1: none, or
+/// more than one.
+static int find_misfit(hn_draw *d, const table *J, const table *N) {
+    int found = -1;
+    for (int i = 0; i < N->rows; i++) {
+        bool fits = true;
+        for (int s = 0; s < d->n_states && fits; s++) {
+            fits = others_fit(d, J, N, i, s);
+        }
+        if (fits && found >= 0) {
+            return -1;
+        }
+        found = fits ? i : found;
+    }
+    return found;
+}
+
+/// The row of J N that is farthest from 0 over the states, from 1.
+static int find_worst_row(hn_draw *d, const table *J, const table *N) {
+    double worst = -1;
+    int row = 0;
+    for (int i = 0; i < J->rows; i++) {
+        table one = {.rows = 1, .cols = J->cols};
+        memcpy(one.e[0], J->e[i], sizeof one.e[0]);
+        const double x = worst_residual(d, &one, N, 0);
+        row = x > worst ? i + 1 : row;
+        worst = fmax(worst, x);
+    }
+    return row;
+}
+
+/// Names what keeps N from the null space.
+static void explain(hn_draw *d, const table *J, const table *N, hn_part_result *out) {
+    int order[MAX_SIZE];
+    const int turned = find_sign(d, J, N), misfit = find_misfit(d, J, N);
+    const double worst = worst_residual(d, J, N, 0);
+    if (turned >= 0) {
+        hn_part_wrong(out, "sign", 0.5, "J N is not 0; with the sign of row %d turned it is",
+                      turned + 1);
+    } else if (is_in_degrees(d, J, N)) {
+        hn_part_wrong(out, "degrees", 0.5, "sine and cosine were taken of degrees");
+    } else if (N->rows <= MAX_ORDERED && find_order(d, J, N, 0, order)) {
+        hn_part_wrong(out, "order", 0.5,
+                      "the rows stand in another order: row %d belongs to the first coordinate",
+                      order[0] + 1);
+    } else if (misfit >= 0) {
+        hn_part_wrong(out, "one-row", 0.25,
+                      "J N is not 0, but with another row %d of N it would be: that row is wrong",
+                      misfit + 1);
+    } else if (!isfinite(worst)) {
+        hn_part_wrong(out, "not-null", 0, "N has no finite value at some configurations");
+    } else {
+        hn_part_wrong(out, "not-null", 0,
+                      "J N must be 0; the product of row %d of J with your N is farthest from it",
+                      find_worst_row(d, J, N));
+    }
+}
+
 static void judge(hn_draw *d, const table *J, const table *N, int r, hn_part_result *out) {
     // the shape, or that of the transpose
     if (N->rows != J->cols || N->cols != r) {
         const int transposed = N->cols == J->cols && N->rows == r;
         hn_part_wrong(out, transposed ? "transposed" : "shape", transposed ? 0.5 : 0,
-                      "N needs %d rows (one for each coordinate) and %d columns (one for each "
-                      "degree of freedom); given: %d x %d",
-                      J->cols, r, N->rows, N->cols);
+                      "N needs %d rows (one for each coordinate) and %d column%s (one for each "
+                      "degree of freedom); yours is %d x %d",
+                      J->cols, r, r == 1 ? "" : "s", N->rows, N->cols);
         return;
     }
 
-    // in the null space, perhaps but for the sign of one row
     if (worst_residual(d, J, N, 0) > ALLOWED) {
-        const int i = find_sign(d, J, N);
-        if (i >= 0) {
-            hn_part_wrong(out, "sign", 0.5, "J N is not 0; with the sign of row %d turned it is",
-                          i + 1);
-        } else {
-            hn_part_wrong(out, "not-null", 0, "J N is not 0 (%.2g of the sizes of J and N)",
-                          worst_residual(d, J, N, 0));
-        }
+        explain(d, J, N, out);
         return;
     }
 
@@ -163,8 +287,9 @@ static void judge(hn_draw *d, const table *J, const table *N, int r, hn_part_res
         const int rank = rank_of(d, N, s);
         if (rank < r) {
             hn_part_wrong(out, "rank", rank > 0 ? 0.25 : 0,
-                          "J N = 0, but the columns are dependent: rank %d, %d are needed", rank,
-                          r);
+                          "J N = 0, but N has rank %d and needs %d: %s", rank, r,
+                          rank == 0 ? "all its entries are 0 at some configuration"
+                                    : "its columns depend on each other");
             return;
         }
     }

@@ -3,6 +3,7 @@
 // with it at the numbers of the variant (number, vector), or at random states (formula, formulas).
 // A wrong entry is compared with the mistakes that the exercise lists, then with those that every
 // formula invites.
+#include "grade/parts/comma_list.h"
 #include "grade/parts/list_text.h"
 #include "grade/parts/part_list.h"
 #include "grade/parts/spelling.h"
@@ -104,9 +105,20 @@ static hn_status grade_entry(hn_value_sheet *s, int k, const cJSON *node, hn_par
 
 /// Returns what to write where the number of entries is wrong: one text or object that stands for
 /// several is not read.
-static const char *shape_advice(const cJSON *given) {
+static const char *shape_advice(const hn_value_sheet *s, const cJSON *given, int count) {
     const bool one = cJSON_IsObject(given) || cJSON_IsString(given);
-    return one ? ": write a list, [..., ...]" : "";
+    const bool more = !s->symbolic && count > s->reference.n;
+    return one    ? ": write a list, [..., ...]"
+           : more ? ": where a comma stands for decimals, write a point"
+                  : "";
+}
+
+/// Returns whether commas may be those of decimals: in one text that stands for several numbers, or
+/// in a list of twice as many numbers as are asked for.
+static bool has_unclear_commas(const hn_value_sheet *s, const cJSON *given, int count) {
+    const char *text = cJSON_GetStringValue(given);
+    return !s->symbolic && s->reference.n > 1 &&
+           (text ? hn_comma_list_is_unclear(text) : count == 2 * s->reference.n);
 }
 
 /// Reads "-0.399, 0.950", a list without its brackets, or one in round brackets; owned. NULL: it
@@ -156,13 +168,18 @@ static hn_status grade_sheet(hn_value_sheet *s, const cJSON *given, hn_part_resu
         name_entry(s, k, r);
         write_expected(s, k, r);
         hn_part_keep_given(r, k ? NULL : given);
-        if (transposed) {
+        if (has_unclear_commas(s, given, count)) {
+            hn_part_unreadable(r,
+                               "'%.60s': %d numbers are asked for, and a comma may stand for "
+                               "decimals or part two of them; write a list with points, [1.5, 2.3]",
+                               results[0].given, s->reference.n);
+        } else if (transposed) {
             hn_part_wrong(r, "transposed", 0,
                           "rows and columns are exchanged: %d columns are asked for",
                           s->reference.columns);
         } else {
             hn_part_wrong(r, "shape", 0, "entries asked for: %d; handed in: %d%s", s->reference.n,
-                          count, shape_advice(given));
+                          count, shape_advice(s, given, count));
         }
     }
     if (misshapen) {

@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Wrong answers that a lecturer expects to be named: each with its sentence. Speaks TAP."""
+
+import json
+import math
+import os
+import sys
+
+sys.path.insert(0, os.path.dirname(__file__))
+from exercise import expect, run, speak_tap, write  # noqa: E402
+
+
+def graded(folder, exercise, part, answer, *more):
+    """The verdict, and the first entry of the part."""
+    done = run("grade", exercise, write(folder, "answer.json", {part: answer}), "--json", "--no-pictures", *more)
+    verdict = json.loads(done.stdout)
+    entry = next(e for e in verdict["entries"] if e["name"].split(".")[0] == part)
+    return done.returncode, verdict, entry
+
+
+def named(folder, exercise, part, answer, mistake, words="", *more):
+    _, _, entry = graded(folder, exercise, part, answer, *more)
+    good = entry["mistake"] == mistake and words in entry["explanation"]
+    expect(f"{exercise} {part}: {answer} is called {mistake}", good, f"{entry['mistake']}: {entry['explanation']}")
+
+
+def formulas(folder):
+    """Angles in degrees, terms of the other side, names that are left out."""
+    named(folder, "trammel", "a", "-L*sin(th*pi/180)", "degrees", "taken of degrees")
+    named(folder, "trammel", "a", "-L*sin(th*180/pi)", "degrees")
+    for sign, share in (("-", 2.01), ("+", 0.99)):
+        answer = f"N'*M*Ndot*u + N'*h {sign} N'*S'*tau"
+        named(folder, "p2", "c", answer, "applied", "right-hand side")
+        points = graded(folder, "p2", "c", answer)[2]["points"]
+        expect(f"p2 c with {sign} N' S' tau keeps its share", abs(points - share) < 1e-9, str(points))
+    named(folder, "p2", "c", "N'*M*N*u + N'*h", "no-rate", "the rate of N is missing")
+    named(folder, "p2", "c", "M*Ndot*u", "not-projected", "h is missing")
+
+
+def shapes(folder):
+    """Two operands that do not fit are named with their shapes."""
+    shown = "N'*M*Ndot is 3 x 3 and N'*h is 3 x 1: they cannot be added; a factor or a transpose may be missing"
+    for answer, says in (("N'*M*Ndot + N'*h", shown), ("-(N'*M*Ndot - N'*h)", shown.replace("added", "subtracted")),
+                         ("N' M u", "N' M is 3 x 5 and u is 3 x 1: they cannot be multiplied"),
+                         ("M Ndot u + N*h", "N is 5 x 3 and h is 5 x 1: they cannot be multiplied")):  # fmt: skip
+        named(folder, "p2", "c", answer, "shape", says)
+
+
+def bases(folder):
+    """What keeps a column from the null space: its rows, its angles, or the constraint that it violates."""
+    right = ["l2*cos(th2)", "-l1*cos(th1)", "l1*l2*sin(th2-th1)"]
+    entry = graded(folder, "basis", "c", right)[2]
+    expect("a right basis is right", entry["points"] == 2, str(entry))
+    named(folder, "basis", "c", [right[2], right[0], right[1]], "order", "row 2 belongs to the first coordinate")
+    named(folder, "basis", "c", [*right[:2], "l1*sin(th2-th1)"], "one-row", "another row 3")
+    named(folder, "basis", "c", ["l2*cos(th2*pi/180)", "-l1*cos(th1*pi/180)", "l1*l2*sin((th2-th1)*pi/180)"], "degrees")
+    named(folder, "basis", "c", [1, 1, 1], "not-null", "row 1 of J with your N")
+    named(folder, "basis", "c", [0, 0, 0], "rank", "N has rank 0 and needs 1")
+    named(folder, "basis", "c", [1, 2], "shape", "1 column (one for each degree of freedom); yours is 2 x 1")
+
+
+def numbers(folder):
+    """Steps of an explicit method: the limit of another axis, the other element, a limit on the wrong side."""
+    for seed in (1, 2, 7):
+        who = ("--seed", str(seed))
+        n = json.loads(run("problem", "stiff", "--json", *who).stdout)["numbers"]
+        rate, frequency = 1000 * n["c"] / n["m"], math.sqrt(1000 * n["k"] / n["m"])
+        for mistake, value in (("imaginary-axis", n["T"] * rate / 2.828), ("spring", n["T"] * frequency / 2.828), ("no-limit", n["T"] * rate),
+                               ("limit-multiplied", n["T"] * rate * 2.785), ("evaluations", 4 * n["T"] * rate / 2.785), ("one-second", rate / 2.785)):  # fmt: skip
+            named(folder, "stiff", "d", value, mistake, "", *who)
+        h = json.loads(run("problem", "drift", "--json", *who).stdout)["numbers"]["h"] / 1000
+        for mistake, value in (("imaginary-axis", 2.828 / h), ("twice", 2.785 / (2 * h)), ("squared", math.sqrt(2.785) / h), ("product", 2.785 * h)):
+            named(folder, "drift", "d", value, mistake, "", *who)
+
+
+def decimal_commas(folder):
+    """A list with decimal commas is read where its marks are clear, and refused where they are not."""
+    right = [float(e["expected"].split()[0]) for e in graded(folder, "conventions", "a", [1, 2], "--show-expected", "--seed", "2")[1]["entries"] if e["name"].startswith("a.")]
+    x, y = (f"{value:g}".replace(".", ",") for value in right)
+    for answer in (f"{x}; {y}", f"[{x}; {y}]", f"({x};{y})", f"{x} {y}", f"[{x} {y}]", f"{x}\n{y}", f"{x} N; {y} N", [x, y]):
+        status, verdict, entry = graded(folder, "conventions", "a", answer, "--seed", "2")
+        expect(f"{answer!r} is read", status == 0 and entry["points"] == 0.5 and "was read as" in verdict["note"], f"{entry} {verdict['note']}")
+    for answer in (f"{x}, {y}", f"[{x}, {y}]", f"{x},{y}", [1, 5, 2, 3]):
+        status, _, entry = graded(folder, "conventions", "a", answer)
+        good = status == 2 and entry["mistake"] == "unreadable" and "write a list with points, [1.5, 2.3]" in entry["explanation"]
+        expect(f"{answer!r} is refused", good, str(entry))
+    status, _, entry = graded(folder, "conventions", "a", "1,234; 5,678")
+    expect("a comma that may part thousands is refused", status == 2 and "for thousands" in entry["explanation"], str(entry))
+    status, _, entry = graded(folder, "assemble", "a", "57,3°; 60,1°")
+    expect("angles of a configuration are read", status == 0 and entry["name"] == "a.th2" and entry["mistake"] != "unreadable", str(entry))
+
+
+if __name__ == "__main__":
+    sys.exit(speak_tap([formulas, shapes, bases, numbers, decimal_commas]))
