@@ -110,7 +110,12 @@ static void put_varied(hn_strbuf *b, const hn_exercise *problem) {
                         : has_options(problem) ? "the order of the options"
                                                : "nothing: the same for all";
     hn_json_put_string(b, "drawn", drawn);
-    b->failed |= names.failed;
+    hn_strbuf ranges;
+    hn_strbuf_init(&ranges);
+    hn_exercise_put_drawn(&ranges, problem, "", "");
+    hn_json_put_string(b, "drawn_from", ranges.n ? hn_strbuf_text(&ranges) : drawn);
+    b->failed |= names.failed || ranges.failed;
+    hn_strbuf_reset(&ranges);
     hn_strbuf_reset(&names);
 }
 

@@ -132,6 +132,7 @@ void hn_exercise_text(hn_strbuf *b, const hn_exercise *p, uint64_t seed, const c
                      "; angles in radians; * for products, ^ for powers, sin(..), cos(..), pi.\n%g "
                      "point%s for each entry; compared at %d random states.\n",
                      p->points, p->points == 1 ? "" : "s", p->n_closed);
+    hn_exercise_put_drawn(b, p, "Other variants have other numbers: ", ".\n");
 }
 
 /// The same numbers as members.
@@ -215,6 +216,49 @@ void hn_exercise_put_ranges(hn_strbuf *b, const hn_exercise *p) {
         hn_json_end_object(b);
     }
     hn_json_end_object(b);
+}
+
+/// "6, 8 or 10"
+static void put_choices(hn_strbuf *b, const cJSON *list) {
+    const cJSON *m;
+    cJSON_ArrayForEach(m, list) {
+        hn_strbuf_printf(b, "%s%g",
+                         m == list->child ? ""
+                         : m->next        ? ", "
+                                          : " or ",
+                         cJSON_GetNumberValue(m));
+    }
+}
+
+void hn_exercise_put_drawn(hn_strbuf *b, const hn_exercise *p, const char *head, const char *tail) {
+    const char *between = head;
+    const cJSON *m;
+    cJSON_ArrayForEach(m, cJSON_GetObjectItemCaseSensitive(p->root, "draw")) {
+        const cJSON *range = cJSON_GetObjectItemCaseSensitive(m, "range");
+        const cJSON *choose = cJSON_GetObjectItemCaseSensitive(m, "choose");
+        const char *unit = hn_part_text(m, "unit");
+        if (hn_exercise_is_hidden(p, m->string) || (!range && !choose)) {
+            continue;
+        }
+        hn_strbuf_printf(b, "%s%s ", between, m->string);
+        between = "; ";
+        if (range) {
+            hn_strbuf_printf(b, "%g to %g", cJSON_GetNumberValue(cJSON_GetArrayItem(range, 0)),
+                             cJSON_GetNumberValue(cJSON_GetArrayItem(range, 1)));
+        } else {
+            put_choices(b, choose);
+        }
+        hn_strbuf_printf(b, "%s%s", unit[0] ? " " : "", unit);
+    }
+    for (int i = 0; !p->n_parts && i < p->n_names; i++) {
+        const hn_grade_name *name = &p->names[i];
+        if (!name->formula) {
+            hn_strbuf_printf(b, "%s%s %g to %g %s", between, name->name, name->low, name->high,
+                             i < p->n_params ? "m" : "rad");
+            between = "; ";
+        }
+    }
+    hn_strbuf_add(b, between == head ? "" : tail);
 }
 
 void hn_exercise_put_names(hn_strbuf *b, const hn_exercise *p) {

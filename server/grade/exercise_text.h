@@ -15,6 +15,11 @@ void hn_exercise_text(hn_strbuf *b, const hn_exercise *problem, uint64_t seed, c
 void hn_exercise_put_names(hn_strbuf *b, const hn_exercise *problem);
 /// Writes the member "ranges": for each name, but the hidden ones, how its number is drawn.
 void hn_exercise_put_ranges(hn_strbuf *b, const hn_exercise *problem);
+/// Writes between which values each number is drawn: "l1 0.4 to 0.9 m; n 6, 8 or 10", with `head`
+/// before and `tail` behind it. Nothing where no number is drawn; hidden names and those that
+/// follow from others are left out.
+void hn_exercise_put_drawn(hn_strbuf *b, const hn_exercise *problem, const char *head,
+                           const char *tail);
 /// {"id","title","statement","points","entries":[..],"seed","numbers":{..},"velocity":{..},
 /// "submission":".."}. The submission begins with the seed, or with the student, of the variant;
 /// with neither where seed is 0 and student NULL.

@@ -4,6 +4,7 @@
 #include "base/hash.h"
 #include "base/paragraphs.h"
 #include "grade/exercise_text.h"
+#include "grade/parts/blank.h"
 #include "grade/repeated_member.h"
 #include "grade/rubric.h"
 #include "grade/student_name.h"
@@ -175,6 +176,7 @@ static void put_hand_in(hn_strbuf *b, const hn_variant *x) {
     }
     hn_strbuf_add(b, "}\n");
     hn_variant_notation(b, x);
+    hn_exercise_put_drawn(b, p, "Other variants have other numbers: ", ".\n");
     if (p->n_hints) {
         hn_strbuf_printf(b, "%d hint%s: holonom problem %s --hint 1\n", p->n_hints,
                          p->n_hints == 1 ? "" : "s", p->id);
@@ -245,6 +247,27 @@ void hn_variant_hint(hn_strbuf *b, hn_variant *x, int number) {
     hn_draw_text(b, &x->draw, x->exercise->hints[number - 1]);
 }
 
+/// The text of a submission to fill in.
+static void put_submission(hn_strbuf *b, const hn_variant *x) {
+    hn_strbuf text;
+    hn_strbuf_init(&text);
+    hn_strbuf_add(&text, "{");
+    put_variant(&text, x);
+    for (int i = 0; i < x->n_parts; i++) {
+        cJSON *blank = x->part[i].kind->blank(&x->part[i]);
+        char *printed = cJSON_PrintUnformatted(blank);
+        hn_strbuf_printf(&text, "%s\"%s\": %s", i ? ", " : "", x->part[i].id,
+                         printed ? printed : "");
+        text.failed |= !printed;
+        cJSON_free(printed);
+        cJSON_Delete(blank);
+    }
+    hn_strbuf_add(&text, "}");
+    hn_json_put_string(b, "submission", hn_strbuf_text(&text));
+    b->failed |= text.failed;
+    hn_strbuf_reset(&text);
+}
+
 void hn_variant_json(hn_strbuf *b, hn_variant *x) {
     const hn_exercise *p = x->exercise;
     char hash[17], seed[32];
@@ -278,6 +301,7 @@ void hn_variant_json(hn_strbuf *b, hn_variant *x) {
     }
     hn_json_end_object(b);
     hn_exercise_put_ranges(b, p);
+    put_submission(b, x);
     hn_json_put_int(b, "hints", p->n_hints);
     hn_json_end_object(b);
 }
@@ -532,7 +556,8 @@ static void show_answer(const hn_variant *x, const cJSON *submission, hn_verdict
 /// values is not read: which of them was meant cannot be told.
 static hn_status grade_part(const hn_part *p, const cJSON *submission,
                             hn_part_result results[HN_PART_RESULTS], int *n, hn_diag *diag) {
-    const cJSON *given = cJSON_GetObjectItemCaseSensitive(submission, p->id);
+    const cJSON *member = cJSON_GetObjectItemCaseSensitive(submission, p->id);
+    const cJSON *given = hn_blank_is(member) ? NULL : member;
     const bool twice = hn_repeated_member_is(submission, p->id);
     const char *name = twice ? p->id : hn_repeated_member_find(given);
     HN_TRY(p->kind->grade(p, name ? NULL : given, results, n, diag));

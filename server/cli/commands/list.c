@@ -40,7 +40,8 @@ static const struct {
         const char *member;
         int n;
         hn_list_column columns[MAX_COLUMNS];
-        const char *note; ///< below the table: what its letters mean; NULL: none
+        const char *note;     ///< below the table: what its letters mean; NULL: none
+        const char *long_key; ///< shown in the last column under --wide; NULL: as otherwise
     } tables[MAX_TABLES];
 } LISTS[] = {
     {"scenes",
@@ -52,6 +53,7 @@ static const struct {
         {"title", "title", NULL},
         {"kind", "kind", NULL},
         {"description", "caption", NULL}},
+       NULL,
        NULL}}},
     {"methods",
      NULL,
@@ -64,18 +66,20 @@ static const struct {
         {"the gap", "drift", NULL},
         {"needs", "needs", NULL}},
        "h: step, p: order of the integrator, t: time. needs: terms that the method evaluates (M "
-       "mass matrix, f forces, phi constraints, J their Jacobian, gamma in J a + gamma = 0)"},
+       "mass matrix, f forces, phi constraints, J their Jacobian, gamma in J a + gamma = 0)",
+       NULL},
       {"integrators",
        4,
        {{"integrator", "name", NULL},
         {"title", "title", NULL},
         {"order", "order", ""},
         {"adaptive", "adaptive", NULL}},
+       NULL,
        NULL}}},
     {"lessons",
      "'holonom lesson NUMBER' prints a lesson",
      hn_lessons_json,
-     {{"lessons", 2, {{"lesson", "id", NULL}, {"title", "title", NULL}}, NULL}}},
+     {{"lessons", 2, {{"lesson", "id", NULL}, {"title", "title", NULL}}, NULL, NULL}}},
     {"problems",
      "'holonom problem ID' prints an exercise",
      hn_shelf_exercises_json,
@@ -90,7 +94,8 @@ static const struct {
         {"drawn from the seed", "drawn", NULL}},
        "minutes: for a student who has read the lesson, estimated from the kinds of answers; "
        "limit: for grading one submission of a class. A run that a part asks for ends after "
-       "200,000 steps. Ranges of the numbers: 'holonom problems --json'"}}},
+       "200,000 steps. Ranges of the numbers: 'holonom problems --wide' or --json",
+       "drawn_from"}}},
 };
 enum { N_LISTS = sizeof LISTS / sizeof *LISTS };
 
@@ -240,6 +245,16 @@ static hn_exit tell_no_cards(const hn_args *args, int which) {
     return hn_report_diag(args, &diag);
 }
 
+static void put_rows(hn_strbuf *b, int which, int table, const cJSON *array, bool wide) {
+    hn_list_column columns[MAX_COLUMNS];
+    const int n = LISTS[which].tables[table].n;
+    memcpy(columns, LISTS[which].tables[table].columns, sizeof columns);
+    if (wide && LISTS[which].tables[table].long_key) {
+        columns[n - 1].key = LISTS[which].tables[table].long_key;
+    }
+    hn_document_list(b, array, columns, n);
+}
+
 hn_exit hn_command_list(const hn_library *lib, const hn_args *args) {
     int which = 0;
     while (which < N_LISTS && strcmp(LISTS[which].name, args->words.word[0]) != 0) {
@@ -267,7 +282,7 @@ hn_exit hn_command_list(const hn_library *lib, const hn_args *args) {
     for (int i = 0; i < MAX_TABLES && LISTS[which].tables[i].member; i++) {
         const cJSON *array = hn_document_get(document, LISTS[which].tables[i].member);
         hn_strbuf_add(&text, i ? "\n" : "");
-        hn_document_list(&text, array, LISTS[which].tables[i].columns, LISTS[which].tables[i].n);
+        put_rows(&text, which, i, array, args->wide);
         if (LISTS[which].tables[i].note) {
             hn_strbuf_printf(&text, "  %s\n", LISTS[which].tables[i].note);
         }

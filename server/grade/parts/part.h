@@ -70,6 +70,8 @@ typedef struct hn_part_kind {
     /// HN_ERR_MEMORY.
     hn_status (*grade)(const hn_part *p, const cJSON *given, hn_part_result *results, int *n,
                        hn_diag *diag);
+    /// An answer to fill in (blank.h), owned.
+    cJSON *(*blank)(const hn_part *p);
     /// A right answer, owned; NULL when it cannot be made.
     cJSON *(*right)(const hn_part *p, hn_diag *diag);
     /// The i-th wrong answer that must be named, owned, and the id of its mistake; NULL after the

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A basis of the null space of a Jacobian, as formulas: any basis is right. J N = 0 and the rank of
 // N are tested at random states.
+#include "grade/parts/blank.h"
 #include "grade/parts/part_list.h"
 #include "grade/parts/read_as.h"
 
@@ -343,6 +344,7 @@ const hn_part_kind hn_part_basis = {
     .is_open = true,
     .ask = ask,
     .grade = grade,
+    .blank = hn_blank_texts,
     .right = hn_part_right_answer,
     .fault = hn_part_fault_answer,
     .prove = NULL, // grading multiplies J N and computes the rank

@@ -336,12 +336,23 @@ static void ask(hn_strbuf *b, const hn_part *p) {
     }
 }
 
+static cJSON *blank(const hn_part *p) {
+    static const char *const MEMBERS[] = {"matrix", "right", "unknowns"};
+    cJSON *out = cJSON_CreateObject();
+    (void)p;
+    for (size_t i = 0; i < sizeof MEMBERS / sizeof *MEMBERS; i++) {
+        cJSON_AddItemToObject(out, MEMBERS[i], cJSON_CreateArray());
+    }
+    return out;
+}
+
 const hn_part_kind hn_part_blocks = {
     .name = "blocks",
     .fields = "sizes matrices unknowns answer second faults",
     .is_open = true,
     .ask = ask,
     .grade = grade,
+    .blank = blank,
     .right = hn_part_right_answer,
     .fault = hn_part_fault_answer,
     .prove = NULL, // grading compares the solved system with the elimination of "second"

@@ -217,6 +217,16 @@ static cJSON *write_letters(const hn_part *p, int choice, int reason) {
     return out;
 }
 
+static cJSON *blank(const hn_part *p) {
+    if (!has_reasons(p)) {
+        return cJSON_CreateString("");
+    }
+    cJSON *out = cJSON_CreateObject();
+    cJSON_AddStringToObject(out, "choice", "");
+    cJSON_AddStringToObject(out, "reason", "");
+    return out;
+}
+
 static cJSON *right(const hn_part *p, hn_diag *diag) {
     const cJSON *order[MAX_OPTIONS], *reasons[MAX_OPTIONS];
     (void)diag;
@@ -264,6 +274,7 @@ const hn_part_kind hn_part_choice = {
     .fields = "options reasons",
     .ask = ask,
     .grade = grade,
+    .blank = blank,
     .right = right,
     .fault = fault,
     .prove = prove,

@@ -10,6 +10,7 @@
 //     "time": 0.5, "method": "...", "second": "..."     instead of "hold": a motion
 //     "asked": ["a2", "th3"]               coordinates of the answer, in this order
 //     "within": 0.03                       [rad], or of the characteristic length
+#include "grade/parts/blank.h"
 #include "grade/parts/part_list.h"
 #include "grade/parts/part_model.h"
 #include "grade/parts/pose_solver.h"
@@ -573,6 +574,7 @@ const hn_part_kind hn_part_configuration = {
     .fields = "scene set hold near time method second asked within",
     .ask = ask,
     .grade = grade,
+    .blank = hn_blank_names,
     .right = right,
     .fault = fault,
     .prove = prove,

@@ -10,6 +10,7 @@
 //
 // Tests: the properties of matrix_property.h, of a formula of matrices; positive: of a formula of
 // the numbers.
+#include "grade/parts/blank.h"
 #include "grade/parts/matrix_property.h"
 #include "grade/parts/part_list.h"
 #include "grade/parts/unit_text.h"
@@ -240,6 +241,7 @@ const hn_part_kind hn_part_example = {
     .is_open = true,
     .ask = ask,
     .grade = grade,
+    .blank = hn_blank_names,
     .right = hn_part_right_answer,
     .fault = hn_part_fault_answer,
     .prove = NULL, // the answer of the exercise goes through the checks like any other

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A formula of matrices, compared with the reference at random matrices that have the properties
 // their names stand for (J N = 0, M symmetric and definite): any form of a right answer is right.
+#include "grade/parts/blank.h"
 #include "grade/parts/formula_frame.h"
 #include "grade/parts/part_list.h"
 #include "grade/parts/read_as.h"
@@ -245,6 +246,7 @@ const hn_part_kind hn_part_matrix = {
     .is_open = true,
     .ask = ask,
     .grade = grade,
+    .blank = hn_blank_text,
     .right = right,
     .fault = fault,
     .prove = prove,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A method with its options that meets an error target within a cost. The method of the answer is
 // run on the scene, and its coordinates at the end are compared with those of the reference method.
+#include "grade/parts/blank.h"
 #include "grade/parts/part_list.h"
 #include "grade/parts/part_model.h"
 
@@ -187,6 +188,7 @@ const hn_part_kind hn_part_method = {
     .is_open = true,
     .ask = ask,
     .grade = grade,
+    .blank = hn_blank_text,
     .right = hn_part_right_answer,
     .fault = hn_part_fault_answer,
     .prove = prove,

@@ -7,6 +7,7 @@
 //     "unit": "mm"                         optional; of the answer: else that of the axis
 //     "second": "projection@dop853"        the same curve by another method, for the proof
 //     "tolerance": {"of_range": 0.03}      share of the span of the axis that is read
+#include "grade/parts/blank.h"
 #include "grade/parts/curve_figure.h"
 #include "grade/parts/part_list.h"
 #include "grade/parts/value_entry.h"
@@ -306,6 +307,7 @@ const hn_part_kind hn_part_reading = {
     .fields = "scene set method second time curve read number unit tolerance",
     .ask = ask,
     .grade = grade,
+    .blank = hn_blank_number,
     .right = right,
     .fault = fault,
     .prove = prove,

@@ -15,6 +15,7 @@
 //     turns      "coordinates": those that turn fully on the way round
 //     curve      "point": a label, or "trace"; "through": [["x1", "y1"], ...], "within": 0.01 [m]
 //     stays      "of": formula of parameters and coordinates, positive all the way round
+#include "grade/parts/blank.h"
 #include "grade/parts/circuit.h"
 #include "grade/parts/part_list.h"
 #include "grade/parts/part_model.h"
@@ -322,6 +323,7 @@ const hn_part_kind hn_part_scene = {
     .is_open = true,
     .ask = ask,
     .grade = grade,
+    .blank = hn_blank_names,
     .right = right,
     .fault = fault,
     .prove = NULL, // the answer of the exercise goes through the tests like any other

@@ -3,6 +3,7 @@
 // with it at the numbers of the variant (number, vector), or at random states (formula, formulas).
 // A wrong entry is compared with the mistakes that the exercise lists, then with those that every
 // formula invites.
+#include "grade/parts/blank.h"
 #include "grade/parts/comma_list.h"
 #include "grade/parts/list_text.h"
 #include "grade/parts/part_list.h"
@@ -232,6 +233,10 @@ static cJSON *right(const hn_part *p, hn_diag *diag) {
     return out;
 }
 
+static cJSON *blank(const hn_part *p) {
+    return hn_value_is_symbolic(p) ? hn_blank_texts(p) : hn_blank_numbers(p);
+}
+
 /// Null entries of a fault filled in with those of the reference.
 static cJSON *complete(const cJSON *fault, const cJSON *reference) {
     if (!cJSON_IsArray(fault)) {
@@ -416,6 +421,7 @@ const hn_part_kind hn_part_values = {
     .fields = "answer second unit period states conditions tolerance faults",
     .ask = ask,
     .grade = grade,
+    .blank = blank,
     .right = right,
     .fault = fault,
     .prove = prove,
