@@ -11,7 +11,7 @@ import { createBench, playTo, read, screenBox, screenshot, soon } from "./suppor
 const { open } = createBench();
 
 test("products of sines and cosines are folded without changing the value", () => {
-  const values = new Map(Object.entries({ a: 0.7, b: -1.3, m: 2, l: 0.4 }));
+  const values = new Map(Object.entries({ a: 0.7, b: -1.3, m: 2, l: 0.4, g: 9.81 }));
   const cases = [
     ["0.5*m*l*sin(a)*sin(b) + 0.5*m*l*cos(a)*cos(b)", "0.5*m*l*cos(a - b)"],
     ["cos(a)*cos(b) - sin(a)*sin(b)", "cos(a + b)"],
@@ -20,6 +20,8 @@ test("products of sines and cosines are folded without changing the value", () =
     ["-m*cos(a)*cos(b) - m*sin(a)*sin(b)", "-m*cos(a - b)"],
     ["cos(a)*cos(b) + m*sin(a)*sin(b)", "cos(a)*cos(b) + m*sin(a)*sin(b)"],
     ["m*(cos(a)*cos(b) + sin(a)*sin(b))", "m*(cos(a)*cos(b) + sin(a)*sin(b))"],
+    ["-m*l*cos(a)*sin(b) - l*cos(b)*(g - m*sin(a))", "m*l*sin(a - b) - l*cos(b)*g"],
+    ["l*cos(b)*(g - m*sin(a))", "l*cos(b)*(g - m*sin(a))"],
   ];
   for (const [text, wanted] of cases) {
     const folded = foldAngles(text, PLAIN);

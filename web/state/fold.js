@@ -5,13 +5,16 @@
 /**
  * The notation of a formula: what joins factors, and sine and cosine of a name.
  * @typedef {{times: string, sine: (name: string) => string, cosine: (name: string) => string,
- *   read: RegExp, of: (fn: string, a: string, sign: string, b: string) => string}} Writing
+ *   read: RegExp, sum: RegExp,
+ *   of: (fn: string, a: string, sign: string, b: string) => string}} Writing
+ * read: a sine or cosine; sum: what stands in brackets as a factor
  */
 
 /** @type {Writing} */
 export const TEX = {
   times: "\\, ",
   read: /^\\(sin|cos) (\\?[A-Za-z]\w*(?:_\{[^{}]*\})?)$/,
+  sum: /^\\left\((.*)\\right\)$/,
   sine: (name) => `\\sin ${name}`,
   cosine: (name) => `\\cos ${name}`,
   of: (fn, a, sign, b) => `\\${fn}(${a} ${sign} ${b})`,
@@ -20,6 +23,7 @@ export const TEX = {
 export const PLAIN = {
   times: "*",
   read: /^(sin|cos)\((\w+)\)$/,
+  sum: /^\((.*)\)$/,
   sine: (name) => `sin(${name})`,
   cosine: (name) => `cos(${name})`,
   of: (fn, a, sign, b) => `${fn}(${a} ${sign} ${b})`,
@@ -50,21 +54,59 @@ function termsOf(text) {
   return terms;
 }
 
+/** The factors of a product outside all brackets. @param {string} text @param {string} times */
+function factorsOf(text, times) {
+  const factors = [];
+  let depth = 0;
+  let from = 0;
+  for (let i = 0; i < text.length; i++) {
+    depth += "({".includes(text[i]) ? 1 : ")}".includes(text[i]) ? -1 : 0;
+    if (depth === 0 && text.startsWith(times, i)) {
+      factors.push(text.slice(from, i));
+      from = i + times.length;
+      i = from - 1;
+    }
+  }
+  return [...factors, text.slice(from)];
+}
+
 /**
  * A product: two functions of angles, and everything else.
  * @param {{sign: string, text: string}} term @param {Writing} writing
  */
 function productOf({ sign, text }, { times, read }) {
-  const factors = text.split(times);
+  const factors = factorsOf(text, times);
   const found = factors.map((factor) => read.exec(factor));
   const angles = found.flatMap((match) => (match ? [{ fn: match[1], of: match[2] }] : []));
   const rest = factors.filter((_, i) => !found[i]);
-  return { sign, text, angles, rest: rest.join(times) };
+  return { sign, text, angles, rest: rest.join(times), key: rest.toSorted().join(times) };
 }
+
+/**
+ * A product of an angle's function and a sum, multiplied out; any other term as it is.
+ * @param {{sign: string, text: string}} term @param {Writing} writing
+ */
+function multipliedOut(term, { times, read, sum }) {
+  const factors = factorsOf(term.text, times);
+  const k = factors.findIndex((factor) => sum.test(factor));
+  if (k < 0 || !factors.some((factor) => read.test(factor))) {
+    return [term];
+  }
+  const outside = factors.toSpliced(k, 1);
+  const [, inside] = /** @type {RegExpExecArray} */ (sum.exec(factors[k]));
+  return termsOf(inside).map(({ sign, text }) => ({
+    sign: sign === term.sign ? "+" : "-",
+    text: [...outside, text].join(times),
+  }));
+}
+
+const COUNTED = /\b(?:sin|cos)\b/g;
+/** @param {string} text */
+const functionsIn = (text) => text.match(COUNTED)?.length ?? 0;
 
 /** Returns what a pair of products is together, or "". */
 function pairOf(a, b, writing) {
-  if (a.angles.length !== 2 || b.angles.length !== 2 || a.rest !== b.rest) {
+  if (a.angles.length !== 2 || b.angles.length !== 2 || a.key !== b.key) {
     return "";
   }
   const [one, two] = a.angles;
@@ -82,7 +124,10 @@ function pairOf(a, b, writing) {
   }
   // sin x cos y - cos x sin y; x is the one whose sine stands in the first product
   const [x, y] = one.fn === "sin" ? [one.of, two.of] : [two.of, one.of];
-  return `${a.sign} ${lead(writing.of("sin", x, alike ? "+" : "-", y))}`;
+  if (alike) {
+    return `${a.sign} ${lead(writing.of("sin", x, "+", y))}`;
+  }
+  return `+ ${lead(a.sign === "+" ? writing.of("sin", x, "-", y) : writing.of("sin", y, "-", x))}`;
 }
 
 /**
@@ -95,7 +140,18 @@ export function foldAngles(text, writing) {
     /(\\left\()([^()]*)(\\right\))/g,
     (_, open, sum, close) => `${open}${foldAngles(sum, writing)}${close}`,
   );
-  const products = termsOf(inner).map((term) => productOf(term, writing));
+  const terms = termsOf(inner);
+  const kept = foldTerms(terms, writing);
+  const open = foldTerms(
+    terms.flatMap((term) => multipliedOut(term, writing)),
+    writing,
+  );
+  return functionsIn(open) < functionsIn(kept) ? open : kept;
+}
+
+/** @param {{sign: string, text: string}[]} terms @param {Writing} writing */
+function foldTerms(terms, writing) {
+  const products = terms.map((term) => productOf(term, writing));
   const out = [];
   while (products.length) {
     const first = /** @type {ReturnType<typeof productOf>} */ (products.shift());
