@@ -80,6 +80,24 @@ static void put_latex_number(printer *p, double value) {
     hn_strbuf_printf(p->b, "%s \\cdot 10^{%d}", text, (int)strtol(e + 1, NULL, 10));
 }
 
+/// The fraction that reads back exactly where decimals would be long: 1/3 for 0.3333333333333333.
+/// Returns whether there is one; of a number cut to some digits there is none.
+static bool find_fraction(const printer *p, double value, char out[40]) {
+    enum { LONG = 10, MOST_TOP = 100, MOST_BOTTOM = 12 };
+    if (p->form != HN_PRINT_TEXT || p->digits != 0) {
+        return false;
+    }
+    format_number(value, 0, out);
+    for (int q = 3; strlen(out) > LONG && q <= MOST_BOTTOM; q++) {
+        const double top = round(value * q);
+        if (top >= 1 && top < MOST_TOP && top / q == value) {
+            snprintf(out, 40, "%.0f/%d", top, q);
+            return true;
+        }
+    }
+    return false;
+}
+
 /// value >= 0
 static void put_number(printer *p, double value) {
     if (p->form == HN_PRINT_LATEX) {
@@ -87,7 +105,9 @@ static void put_number(printer *p, double value) {
         return;
     }
     char text[40];
-    format_number(value, p->digits, text);
+    if (!find_fraction(p, value, text)) {
+        format_number(value, p->digits, text);
+    }
     put(p, text);
     if (p->form == HN_PRINT_C && !strpbrk(text, ".e")) {
         put(p, ".0"); // an integer constant would make C divide whole numbers
@@ -356,8 +376,9 @@ static void put_sum(printer *p, const hn_node *node, double factor) {
 static level level_of(const printer *p, hn_ex e) {
     const hn_node *node = &p->g->nodes[e.n];
     double value;
+    char text[40];
     if (hn_is_number(e, &value)) {
-        return value < 0 ? LEVEL_SUM : LEVEL_ATOM;
+        return value < 0 ? LEVEL_SUM : find_fraction(p, value, text) ? LEVEL_PRODUCT : LEVEL_ATOM;
     }
     if (e.c < 0 || (node->op == HN_OP_SUM && can_distribute(p, node, e.c))) {
         return LEVEL_SUM;

@@ -274,6 +274,11 @@ for (const [theme, width] of [
 ]) {
   test(`exercises are checked, hints come in steps: ${theme}, ${width} wide`, async (t) => {
     const page = await openLesson(t, { viewport: { width, height: 780 }, colorScheme: theme });
+    assert.equal(
+      await page.locator(".exercise summary span").first().innerText(),
+      "Exercise p3: Constraint Jacobian of the four-bar",
+      "a closed exercise says what it is about",
+    );
     await page.getByText("Exercise p3").click();
     await page.waitForSelector(".answer-matrix");
     const right = ["-l1*sin(th1)", "-l2*sin(th2)", "l3*sin(th3)", "l4*sin(th4)"];

@@ -50,6 +50,8 @@ export const documents = {
   lesson: (id) => request("GET", `${BASE}/lessons/${id}`),
   /** @param {string} id @param {string} src as the lesson names it */
   pictureAddress: (id, src) => `${BASE}/lessons/${id}/${src}`,
+  /** All exercises in short. @returns {Promise<{problems: {id: string, title: string}[]}>} */
+  problems: () => request("GET", `${BASE}/problems`),
   /** @param {string} id */
   problem: (id) => request("GET", `${BASE}/problems/${id}`),
   /** @param {string} id @param {number} number from 1 @returns {Promise<{text: string}>} */

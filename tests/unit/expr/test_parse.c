@@ -207,7 +207,9 @@ static void write_formula(hn_strbuf *b, unsigned *seed, int depth) {
     *seed = *seed * 1664525u + 1013904223u;
     const unsigned r = *seed >> 10;
     if (depth == 0 || r % 7 == 0) {
-        if (r % 3 == 0) {
+        if (r % 3 == 0 && r % 2 == 0) {
+            hn_strbuf_printf(b, "(%u/%u)", 1 + r % 97, 3 + r % 11);
+        } else if (r % 3 == 0) {
             hn_strbuf_printf(b, "%g", (double)(r % 97) / 8 + 0.125);
         } else {
             hn_strbuf_add(b, KNOWN[r % N_KNOWN]);
@@ -309,6 +311,29 @@ static void numbers_at_the_ends_of_the_range_read_back(void **state) {
     }
 }
 
+// fractions read better than long decimals, in whatever stands around them
+static void fractions_read_as_people_write_them(void **state) {
+    (void)state;
+    static const char *const texts[][2] = {{"m1*l1^2/3", "1/3*m1*l1^2"},
+                                           {"x^(1/3) - 2/3", "pow(x, 1/3) - 2/3"},
+                                           {"(2/3)^x", "pow(2/3, x)"},
+                                           {"0.625*x + 0.3333", "0.625*x + 0.3333"},
+                                           {"0.333333333333*x", "0.333333333333*x"}};
+    hn_graph *g = hn_graph_create();
+    const hn_parse_opts opts = opts_for(g);
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+        hn_ex e;
+        hn_diag diag = {0};
+        hn_strbuf text;
+        hn_strbuf_init(&text);
+        assert_int_equal(hn_parse(g, texts[i][0], &opts, &e, &diag), HN_OK);
+        hn_print(&text, g, e, HN_PRINT_TEXT, 0);
+        assert_string_equal(hn_strbuf_text(&text), texts[i][1]);
+        hn_strbuf_reset(&text);
+    }
+    hn_graph_free(g);
+}
+
 static void sums_beyond_the_range_are_refused(void **state) {
     (void)state;
     static const char *const texts[] = {"x-1e308-1e308", "1e308+1e308", "l1 + (1e308*x + 1e308*x)"};
@@ -398,6 +423,7 @@ int main(void) {
         cmocka_unit_test(the_deepest_tower_of_powers_reads_back),
         cmocka_unit_test(printed_formulas_read_back),
         cmocka_unit_test(numbers_at_the_ends_of_the_range_read_back),
+        cmocka_unit_test(fractions_read_as_people_write_them),
         cmocka_unit_test(sums_beyond_the_range_are_refused),
         cmocka_unit_test(latex_and_c_read_as_people_write_them),
         cmocka_unit_test(text_that_would_explode_marks_the_buffer),

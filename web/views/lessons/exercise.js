@@ -114,12 +114,12 @@ function matrixField(id, { name, rows, columns }) {
 }
 
 /**
- * @param {{id: string, about: Node[], progress: import("../../state/progress.js").Progress,
- *   changed: () => void}} how
+ * @param {{id: string, title?: string, about: Node[], progress: import("../../state/progress.js").Progress,
+ *   changed: () => void}} how title: where it is known before the exercise is opened
  */
-export function createExercise({ id, about, progress, changed }) {
+export function createExercise({ id, title: known, about, progress, changed }) {
   const body = h("div", { class: "exercise-body" });
-  const title = h("span", {}, `Exercise ${id}`);
+  const title = h("span", {}, known ? `Exercise ${id}: ${known}` : `Exercise ${id}`);
   const mark = h("span", { class: "about" });
   const details = h(
     "details",

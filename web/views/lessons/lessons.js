@@ -22,6 +22,8 @@ const KATEX_STYLE = "vendor/katex/katex.min.css";
 export function createLessons(el, store, actions) {
   const data = store.data;
   const progress = createProgress();
+  /** @type {Map<string, string>} */
+  const titles = new Map();
   let katex = null;
   let shown = "";
   let isOpen = false;
@@ -151,7 +153,21 @@ export function createLessons(el, store, actions) {
   }
 
   /** @param {string} id @param {Node[]} about */
-  const exercise = (id, about) => createExercise({ id, about, progress, changed: fillMenu });
+  const exercise = (id, about) =>
+    createExercise({ id, title: titles.get(id), about, progress, changed: fillMenu });
+
+  /** Titles of all exercises, asked for once; without them an exercise shows its name alone. */
+  async function learnTitles() {
+    if (titles.size) {
+      return;
+    }
+    try {
+      const { problems } = await documents.problems();
+      problems.forEach(({ id, title }) => titles.set(id, title));
+    } catch {
+      // each exercise still says its title when it is opened
+    }
+  }
 
   /** @param {string} id */
   async function show(id) {
@@ -160,7 +176,7 @@ export function createLessons(el, store, actions) {
     back.disabled = placeOf(id) <= 0;
     next.disabled = placeOf(id) === data.lessons.length - 1;
     try {
-      const lesson = await documents.lesson(id);
+      const [lesson] = await Promise.all([documents.lesson(id), learnTitles()]);
       if (!katex && lesson.blocks.some(hasMath)) {
         const [library] = await Promise.all([import("katex"), loadStyle(KATEX_STYLE)]);
         katex = library.default;
