@@ -4,6 +4,7 @@
 #include "base/hash.h"
 #include "expr/print.h"
 #include "grade/exam.h"
+#include "grade/follow_on.h"
 #include "grade/grade.h"
 #include "grade/parts/value_sheet.h"
 #include "grade/variant.h"
@@ -261,6 +262,9 @@ static hn_status try_part(trial *t, const hn_part *p) {
     hn_diag diag = {0};
     try_checks(t, p);
     if (p->kind->prove && p->kind->prove(p, &diag) != HN_OK) {
+        complain_of_file(t, (int)(p - t->variant.part), &diag);
+    }
+    if (hn_follow_on_prove(&t->variant, (int)(p - t->variant.part), &diag) != HN_OK) {
         complain_of_file(t, (int)(p - t->variant.part), &diag);
     }
     HN_TRY(try_right(t, p));

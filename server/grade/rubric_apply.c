@@ -39,7 +39,7 @@ static const char *const GENERAL[] = {"sign",           "half",         "double"
                                       "double-term",    "half-term",    "no-root",
                                       "not-squared",    "no-power",     "no-divisor",
                                       "relative-angle", "other-name",   "exchanged-names",
-                                      "wrong-factor"};
+                                      "wrong-factor",   "follow-on"};
 enum { N_GENERAL = sizeof GENERAL / sizeof *GENERAL };
 
 /// Calls for every mistake that a part names by itself: its faults, its tests, its wrong options.
@@ -320,6 +320,11 @@ static void put_shares(hn_strbuf *b, const hn_exercise *e) {
     }
     for (int i = 0; i < e->n_parts; i++) {
         const cJSON *m;
+        if (hn_part_text(e->parts[i].node, "follows")[0] &&
+            !is_listed(names, list.n, "follow-on")) {
+            add_name(&list, "follow-on");
+            hn_strbuf_printf(b, "%s\"follow-on\": 1", list.n > 1 ? ", " : "");
+        }
         cJSON_ArrayForEach(m, cJSON_GetObjectItemCaseSensitive(e->parts[i].node, "faults")) {
             const char *id = hn_part_text(m, "id");
             const double share = hn_part_number(m, "share", 0);

@@ -4,6 +4,7 @@
 #include "base/hash.h"
 #include "base/paragraphs.h"
 #include "grade/exercise_text.h"
+#include "grade/follow_on.h"
 #include "grade/parts/blank.h"
 #include "grade/repeated_member.h"
 #include "grade/rubric.h"
@@ -586,6 +587,9 @@ hn_status hn_variant_grade(hn_variant *x, const cJSON *submission, hn_verdict *v
             return HN_ERR_STOPPED;
         }
         HN_TRY(status);
+        if (n == 1) {
+            hn_follow_on_find(x, i, submission, v, &results[0]);
+        }
         add_results(v, &x->part[i], results, n);
     }
     hn_submission_remark_read_as(v);

@@ -90,5 +90,47 @@ def decimal_commas(folder):
     expect("angles of a configuration are read", status == 0 and entry["name"] == "a.th2" and entry["mistake"] != "unreadable", str(entry))
 
 
+def follow_ons(folder):
+    """A number that is right with a wrong earlier answer keeps its points; a rubric may give it less."""
+    n = json.loads(run("problem", "stiff", "--json").stdout)["numbers"]
+    right = 2.785 * n["m"] / n["c"]
+
+    def parts(answers, *more):
+        done = run("grade", "stiff", write(folder, "chain.json", answers), "--json", "--no-pictures", *more)
+        return {e["name"]: (e["points"], e["mistake"]) for e in json.loads(done.stdout)["entries"]}
+
+    wrong = 1.7 * right
+    for given in (wrong, f"{wrong} ms", f"{1000 * wrong} us"):
+        found = parts({"c": given, "d": n["T"] * 1000 / wrong})
+        expect(f"d from the wrong c {given} keeps its point", found["d"] == (1, "follow-on") and found["c"][0] == 0, str(found))
+    for name, answers in (("a right c", {"c": right, "d": n["T"] * 1000 / wrong}), ("no c", {"d": n["T"] * 1000 / wrong}),
+                          ("an unreadable c", {"c": "?", "d": n["T"] * 1000 / wrong}), ("another c", {"c": 1.3 * right, "d": n["T"] * 1000 / wrong})):  # fmt: skip
+        found = parts(answers)
+        expect(f"with {name} it does not", found["d"][0] < 1 and found["d"][1] != "follow-on", str(found))
+    found = parts({"c": wrong, "d": n["T"] * 1000 / right})
+    expect("a right number is right whatever c is", found["d"] == (1, ""), str(found))
+
+    # a rubric's share, and two earlier answers
+    rubric = json.loads(run("rubric", "write", "stiff").stdout)
+    expect("the rubric shows the share", rubric["shares"]["follow-on"] == 1, str(rubric["shares"]))
+    rubric["shares"]["follow-on"] = 0.5
+    path = write(folder, "half.json", rubric)
+    expect("a rubric with a share for it is sound", run("rubric", "check", path).returncode == 0)
+    found = parts({"c": wrong, "d": n["T"] * 1000 / wrong}, "--rubric", path)
+    expect("a rubric gives it less", found["d"] == (0.5, "follow-on"), str(found))
+    done = json.loads(run("grade", "cost", write(folder, "two.json", {"a": 700, "b": 90, "c": 700 * 45}), "--json").stdout)
+    entry = next(e for e in done["entries"] if e["name"] == "c")
+    expect("two wrong answers are both named", entry["points"] == 2 and "your answers to parts a and b, which are wrong" in entry["explanation"], str(entry))
+
+    # an exercise whose formula is wrong is found by its check
+    part = {"ask": "?", "kind": "number", "points": 1}
+    exercise = {"exercise": 2, "id": "mine", "title": "t", "lesson": "l", "section": "s", "statement": ["s"], "draw": {"l": {"range": [1, 9], "digits": 1}},
+                "parts": [dict(part, id="a", answer="3*l", second="l+2*l"), dict(part, id="b", answer="6*l", second="l*6")]}  # fmt: skip
+    for formula, says in (("2*{a}", None), ("3*{a}", "is not the answer where the earlier answers are right"), ("6*l+0*{a}", "whatever the earlier"), ("2*{b}", "is not the answer")):
+        exercise["parts"][1]["follows"] = formula
+        done = run("problem", write(folder, "mine.json", exercise), "--seeds", "1..5", "--check")
+        expect(f"the check of {formula}", done.returncode == (3 if says else 0) and (says or "0 variants are bad") in " ".join(done.stdout.split()), done.stdout)
+
+
 if __name__ == "__main__":
-    sys.exit(speak_tap([formulas, shapes, bases, numbers, decimal_commas]))
+    sys.exit(speak_tap([formulas, shapes, bases, numbers, decimal_commas, follow_ons]))

@@ -418,7 +418,7 @@ static void ask(hn_strbuf *b, const hn_part *p) {
 
 const hn_part_kind hn_part_values = {
     .name = "values",
-    .fields = "answer second unit period states conditions tolerance faults",
+    .fields = "answer second unit period states conditions tolerance follows faults",
     .ask = ask,
     .grade = grade,
     .blank = blank,
