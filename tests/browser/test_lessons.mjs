@@ -13,7 +13,7 @@ import {
 } from "../../web/state/answers.js";
 import { exhibitOf } from "../../web/state/exhibit.js";
 import { violations } from "./axe.mjs";
-import { createBench, read, screenshot, soon, until } from "./support.mjs";
+import { createBench, read, screenBox, screenshot, soon, until } from "./support.mjs";
 
 const { open } = createBench();
 const text = (words) => ({ kind: "text", text: words });
@@ -320,6 +320,17 @@ for (const [theme, width] of [
     await page.locator(".exhibit").scrollIntoViewIfNeeded();
     await page.waitForSelector(".exhibit .thumbnail");
     await screenshot(page, `lesson-${theme}-${width}`, { seen: true });
+  });
+}
+
+for (const width of [1024, 1100, 1199, 1366]) {
+  test(`the verdicts end where the lesson begins: ${width} wide`, async (t) => {
+    const page = await openLesson(t, { viewport: { width, height: 768 } });
+    const [bar, panel] = await Promise.all(
+      [".verdict-bar", ".lesson-panel"].map((one) => screenBox(page.locator(one))),
+    );
+    assert.ok(bar.width > 300, `${bar.width} px are too narrow for a verdict`);
+    assert.ok(bar.x + bar.width <= panel.x + 0.5, `${bar.x + bar.width} > ${panel.x}`);
   });
 }
 
