@@ -96,8 +96,10 @@ static cJSON *ask(hn_conversation *c, double seconds) {
         fail(c, HN_ERR_MEMORY);
         return NULL;
     }
+    const double mark = hn_guest_process_clock_start(&c->process);
     const hn_status status = hn_guest_process_ask(&c->process, hn_strbuf_text(&c->text), c->text.n,
                                                   seconds, &c->line, &c->why);
+    c->cpu += hn_guest_process_clock_stop(&c->process, mark);
     if (status != HN_OK) {
         fail(c, status);
         return NULL;
@@ -235,6 +237,8 @@ static hn_status greet(hn_conversation *c) {
     hn_strbuf_clear(&c->text);
     put_greeting(c);
     cJSON *greeting = ask(c, c->process.limits.start);
+    c->process.n_clocks = 0; // an interpreter may have started since
+    c->cpu = 0;
     if (!greeting) {
         return c->why.status;
     }
@@ -521,8 +525,12 @@ hn_status hn_conversation_step(hn_conversation *c, double t, double h, const dou
         // one question for many steps; a step of another size stands alone
         if (!is_ahead(c, t, h)) {
             const bool regular = h == c->ahead_h || c->id == 0;
+            const double before = c->cpu;
             HN_TRY(ask_solve(c, t, h, q, v, regular ? HN_CONVERSATION_AHEAD : 1));
+            c->ahead_cpu = (c->cpu - before) / c->n_ahead;
+            c->cpu = before;
         }
+        c->cpu += c->ahead_cpu;
         const size_t row = (size_t)c->next_ahead++ * (size_t)c->nu;
         memcpy(c->uq, c->ahead_q + row, (size_t)c->nu * sizeof *c->uq);
         memcpy(c->uv, c->ahead_v + row, (size_t)c->nu * sizeof *c->uv);

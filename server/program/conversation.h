@@ -47,6 +47,8 @@ typedef struct hn_conversation {
     double *ahead_q, *ahead_v; ///< HN_CONVERSATION_AHEAD x nu
     double ahead_t, ahead_h;
     int n_ahead, next_ahead;
+    double cpu;       ///< computing time of the program for the answers that were used [s]
+    double ahead_cpu; ///< of each row that was computed ahead [s]
     // of a program that gives accelerations
     hn_repeated_question repeated;
     double *answer; ///< (nu) to the question asked last, while another one is asked again

@@ -102,6 +102,7 @@ static void name_limit(const char *message, const hn_program_limits *limits, cha
                  {"out of memory", 'm'},
                  {"Cannot allocate memory", 'm'},
                  {"No space left on device", 'f'},
+                 {"File too large", 'f'},
                  {"Resource temporarily unavailable", 'p'},
                  {"start new thread", 'p'}};
     out[0] = '\0';
@@ -119,13 +120,28 @@ static void name_limit(const char *message, const hn_program_limits *limits, cha
     }
 }
 
-void hn_crash_words(const char *errors, const char *file, const hn_program_limits *limits,
-                    char out[320]) {
+/// Writes why the sandbox lacks a part that the program asks for; "" where it asks for none.
+static void name_sandbox(const char *message, char out[80]) {
+    static const char *const WORDS[] = {"No module named", "Cannot find module",
+                                        " No such file or directory"};
+    out[0] = '\0';
+    for (size_t i = 0; i < sizeof WORDS / sizeof *WORDS && !out[0]; i++) {
+        if (strstr(message, WORDS[i])) {
+            snprintf(out, 80, "; the sandbox holds this file and the packages of the system alone");
+        }
+    }
+}
+
+void hn_crash_words(const char *errors, const char *file, bool confined,
+                    const hn_program_limits *limits, char out[320]) {
     char message[MESSAGE], place[80] = "", limit[80];
     const char *slash = file ? strrchr(file, '/') : NULL, *name = slash ? slash + 1 : file;
     const char *at = find_message(errors);
     copy_line(at, message);
     name_limit(message, limits, limit);
+    if (confined && !limit[0]) {
+        name_sandbox(message, limit);
+    }
 
     // the line, where the message does not name one
     const long line = name && *name ? find_place(errors, name, at) : 0;

@@ -7,6 +7,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <math.h>
 #include <poll.h>
 #include <signal.h>
 #include <spawn.h>
@@ -87,7 +88,8 @@ static const char *last_word(char *const *argv) {
 hn_status hn_guest_process_start(hn_guest_process *p, char *const *argv, const char *file,
                                  const hn_program_limits *limits, hn_diag *diag) {
     int in[2] = {-1, -1}, out[2] = {-1, -1}, err[2] = {-1, -1};
-    *p = (hn_guest_process){.in = -1, .out = -1, .err = -1, .limits = *limits};
+    *p = (hn_guest_process){
+        .in = -1, .out = -1, .err = -1, .limits = *limits, .confined = file != NULL};
     snprintf(p->file, sizeof p->file, "%s", file ? base_name(file) : last_word(argv));
     hn_strbuf_init(&p->pending);
     int failed = pipe2(in, O_CLOEXEC) || pipe2(out, O_CLOEXEC) || pipe2(err, O_CLOEXEC) ? errno : 0;
@@ -216,6 +218,36 @@ static hn_status check_use(hn_guest_process *p, hn_diag *diag) {
     return HN_OK;
 }
 
+static double read_clocks(const hn_guest_process *p) {
+    double sum = 0;
+    for (int i = 0; i < p->n_clocks; i++) {
+        struct timespec t = {0};
+        if (clock_gettime(p->clocks[i], &t) == 0) {
+            sum += (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+        }
+    }
+    return sum;
+}
+
+double hn_guest_process_clock_start(hn_guest_process *p) {
+    const double now = hn_clock_wall();
+    if (p->pid > 0 && (p->n_clocks == 0 || now - p->found > 1e-3 * LOOK)) {
+        use sum = {0};
+        add_use(&sum, p->pid, 0);
+        p->n_clocks = 0;
+        for (int i = 0; i < sum.processes && p->n_clocks < HN_GUEST_CLOCKS; i++) {
+            p->n_clocks += clock_getcpuclockid((pid_t)sum.seen[i], &p->clocks[p->n_clocks]) == 0;
+        }
+        p->found = now;
+    }
+    return read_clocks(p);
+}
+
+// one that has ended takes its time with it
+double hn_guest_process_clock_stop(const hn_guest_process *p, double begin) {
+    return fmax(0, read_clocks(p) - begin);
+}
+
 // ---- reading and writing ----
 
 static void read_errors(hn_guest_process *p) {
@@ -253,7 +285,7 @@ static hn_status say_end(hn_guest_process *p, hn_diag *diag) {
 
     // what it wrote to standard error
     char last[320];
-    hn_crash_words(hn_guest_process_errors(p), p->file, &p->limits, last);
+    hn_crash_words(hn_guest_process_errors(p), p->file, p->confined, &p->limits, last);
 
     // a limit that it reached, a signal, or an end of its own
     if (ended == 128 + SIGXCPU || (ended == 128 + SIGKILL && p->cpu >= 0.9 * p->limits.cpu)) {

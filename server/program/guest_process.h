@@ -10,8 +10,9 @@
 
 #include <stdbool.h>
 #include <sys/types.h>
+#include <time.h>
 
-enum { HN_GUEST_ERRORS = 4096, HN_GUEST_FILE = 3 };
+enum { HN_GUEST_ERRORS = 4096, HN_GUEST_FILE = 3, HN_GUEST_CLOCKS = 64 };
 
 typedef struct hn_guest_process {
     pid_t pid; ///< 0: there is none
@@ -21,8 +22,13 @@ typedef struct hn_guest_process {
     char errors[HN_GUEST_ERRORS]; ///< the beginning of its standard error
     int n_errors;
     char file[64];  ///< name of the program's file
+    bool confined;  ///< it is in the sandbox, with this file alone
     long long peak; ///< [bytes] of memory, the most that was seen
     double cpu;     ///< [s]; known after hn_guest_process_end()
+    // the CPU clocks of its processes, as they were found
+    clockid_t clocks[HN_GUEST_CLOCKS];
+    int n_clocks;
+    double found; ///< when that was [s]
 } hn_guest_process;
 
 /// Starts a command line; it finds `file` (NULL: none) open for reading as HN_GUEST_FILE. Fails:
@@ -36,6 +42,11 @@ HN_MUST_CHECK hn_status hn_guest_process_ask(hn_guest_process *p, const char *te
                                              double seconds, hn_strbuf *line, hn_diag *diag);
 /// Returns whether it has written more than it was asked for.
 bool hn_guest_process_has_more(hn_guest_process *p);
+/// Starts a stop-watch: returns the computing time of its processes so far [s]. Processes that it
+/// has started since it was last looked at are found first, at most twenty times a second.
+double hn_guest_process_clock_start(hn_guest_process *p);
+/// Returns how much computing time has passed since `begin` [s], of the processes known then.
+double hn_guest_process_clock_stop(const hn_guest_process *p, double begin);
 /// Waits for its end: its exit status, 128 + signal, or -1 when the time is over.
 int hn_guest_process_wait(hn_guest_process *p, double seconds);
 /// The beginning of its standard error, printable.

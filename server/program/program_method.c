@@ -157,7 +157,9 @@ static hn_status rhs(void *self, double t, const double *y, double *ydot) {
     guest *g = self;
     const double *q = hn_unit_positions(g->base.sys, y, g->base.unit), *v = y + g->base.nq;
     g->base.cost.evals++;
+    const double before = g->talk->cpu;
     const hn_status status = hn_conversation_accelerations(g->talk, t, q, v, ydot + g->base.nq);
+    g->base.cost.elsewhere += g->talk->cpu - before;
     if (status != HN_OK) {
         keep_why(g);
         return status;
@@ -210,8 +212,10 @@ static hn_status step(void *self, const hn_ode *ode, double t, double h, const d
     (void)self;
     (void)err;
     g->base.cost.evals++;
+    const double before = g->talk->cpu;
     const hn_status status =
         hn_conversation_step(g->talk, t, h, y, y + g->base.nq, y_new, y_new + g->base.nq);
+    g->base.cost.elsewhere += g->talk->cpu - before;
     if (status != HN_OK) {
         keep_why(g);
     }

@@ -366,6 +366,19 @@ class Services(OneFile):
         self.assertEqual({r["operations"] == "" for r in rows if r["method"].startswith("program")}, {True})
         self.assertRegex(call(*words, **where).stdout, r"(?m)program:\S+ +2/2 .* -$")
 
+    def test_the_time_of_a_step_holds_what_the_program_computes(self):
+        """Two programs in one comparison: each has its own time, and the workbench's own steps theirs."""
+        busy = STEP.replace("    say(", "    end = time.process_time() + 2e-3\n    while time.process_time() < end: pass\n    say(")
+        for name, text in (("busy.py", busy), ("quick.py", STEP)):
+            with open(os.path.join(self.folder.name, name), "w", encoding="utf-8") as f:
+                f.write(GREETING + text)
+        methods = ["program:./busy.py@own:h=1e-2", "program:./quick.py@own:h=1e-2", "projection@rk4:h=1e-2"]
+        done = call("compare", "pendulum", "--methods", *methods, "--time", "2", "--json", ALLOW, cwd=self.folder.name)
+        busy, quick, ours = (m["step_cpu"]["median"] for m in json.loads(done.stdout)["methods"])
+        self.assertGreater(busy, 2e-3)
+        self.assertLess(quick, 0.6 * busy)
+        self.assertLess(ours, 0.1 * quick)
+
     def test_a_file_that_is_none_is_refused(self):
         for name, said in (("no-such.py", "there is no program"), ("/tmp", "is not a file"), ("/etc/passwd", "cannot be started")):
             done = call("run", "pendulum", "--method", f"program:{name}", "--time", "0.1", ALLOW)
@@ -463,6 +476,8 @@ class Hostile(OneFile):
         crashes = {"greet('step')\ndef half(x):\n    raise ValueError('wrong sign')\nhalf(2)\n": rf"ValueError: wrong sign \(mine\.py, line {begin + 2}\)",
                    "greet('step')\nx = []\nwhile True: x.append(bytearray(1 << 24))\n": rf"MemoryError \(mine\.py, line {begin + 2}\); 768 MB of memory are allowed|holds more than 768 MB of memory"}
         if not TROUBLE:
+            crashes["greet('step')\nimport neighbour\n"] = rf"No module named 'neighbour' \(mine\.py, line {begin + 1}\); the sandbox holds this file and the packages of the system alone"
+            crashes["greet('step')\nopen('/tmp/a', 'wb').write(b'x' * (1 << 25))\n"] = r"File too large \(mine\.py, line \d+\); 16 MB of files are allowed"
             crashes["greet('step')\nfor k in range(99):\n    open('/tmp/%d' % k, 'wb').write(b'x' * (1 << 23))\n"] = r"No space left on device \(mine\.py, line \d+\); 16 MB of files are allowed"
         for text, said in crashes.items():
             done = self.run_program(text, "--answer-time", "60")

@@ -15,6 +15,7 @@ void hn_cost_add(hn_cost *sum, const hn_cost *part) {
     sum->energy_removed += part->energy_removed;
     sum->chart_changes += part->chart_changes;
     sum->rejected += part->rejected;
+    sum->elsewhere += part->elsewhere;
 }
 
 hn_cost hn_cost_between(const hn_cost *before, const hn_cost *after) {
@@ -30,6 +31,7 @@ hn_cost hn_cost_between(const hn_cost *before, const hn_cost *after) {
         .energy_removed = after->energy_removed - before->energy_removed,
         .chart_changes = after->chart_changes - before->chart_changes,
         .rejected = after->rejected - before->rejected,
+        .elsewhere = after->elsewhere - before->elsewhere,
     };
 }
 

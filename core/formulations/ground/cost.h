@@ -14,6 +14,7 @@ typedef struct hn_cost {
     double energy_removed; ///< by projection [J]
     long long chart_changes;
     long long rejected; ///< trial steps rejected by an integrator with a step control of its own
+    double elsewhere;   ///< computing time of other processes that were asked [s]
 } hn_cost;
 
 /// sum += part, field by field.

@@ -28,6 +28,7 @@ typedef struct entry {
     int over_limit;                ///< stopped by the comparison because one frame cost too much
     double slowness;               ///< computing time per simulated time in that frame [-]
     double frame_cpu, frame_t;     ///< computing time and own time when the frame was begun [s]
+    double frame_own_cpu;          ///< computing time of this process then [s]
     long long frame_steps;         ///< steps when the frame was begun
     double step_cpu[COST_FRAMES];  ///< computing time a step, of the last frames [s]
     int n_costs;                   ///< frames that were measured
@@ -259,12 +260,18 @@ bool hn_comparison_finished(const hn_comparison *c) {
     return true;
 }
 
+/// Computing time of this process [s]: a program that is asked has a limit of its own.
+static double own_cpu(const entry *e) {
+    const hn_run_summary s = hn_run_get_summary(e->run);
+    return s.cpu_seconds - s.cost.elsewhere;
+}
+
 int hn_comparison_slowest(const hn_comparison *c, double *slowness) {
     int slowest = -1;
     double most = 0;
     for (int i = 0; i < c->n && c->in_frame; i++) {
         const entry *e = &c->entries[i];
-        const double cpu = hn_run_get_summary(e->run).cpu_seconds - e->frame_cpu;
+        const double cpu = own_cpu(e) - e->frame_own_cpu;
         if (is_live(e) && cpu > most) {
             const double moved = hn_run_time(e->run) - e->frame_t;
             most = cpu;
@@ -277,7 +284,7 @@ int hn_comparison_slowest(const hn_comparison *c, double *slowness) {
 
 /// Stops a method whose frame has cost too much; 1 when it did.
 static bool check_cpu_limit(const hn_comparison *c, entry *e) {
-    const double cpu = hn_run_get_summary(e->run).cpu_seconds - e->frame_cpu;
+    const double cpu = own_cpu(e) - e->frame_own_cpu;
     if (cpu <= c->cpu_limit) {
         return false;
     }
@@ -461,6 +468,7 @@ bool hn_comparison_work(hn_comparison *c, int (*stop)(void *user), void *user) {
     for (int i = 0; i < c->n && !c->in_frame; i++) {
         const hn_run_summary s = hn_run_get_summary(c->entries[i].run);
         c->entries[i].frame_cpu = s.cpu_seconds;
+        c->entries[i].frame_own_cpu = s.cpu_seconds - s.cost.elsewhere;
         c->entries[i].frame_steps = s.steps;
         c->entries[i].frame_t = hn_run_time(c->entries[i].run);
     }

@@ -22,7 +22,8 @@ static const double ROUNDING = 1e-12; // [m] a gap below it has other digits whe
 static double cpu_used(const hn_comparison *c) {
     double sum = 0;
     for (int i = 0; i < hn_comparison_n_methods(c); i++) {
-        sum += hn_run_get_summary(hn_comparison_run(c, i)).cpu_seconds;
+        const hn_run_summary s = hn_run_get_summary(hn_comparison_run(c, i));
+        sum += s.cpu_seconds - s.cost.elsewhere;
     }
     return sum;
 }

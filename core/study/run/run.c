@@ -323,7 +323,8 @@ hn_run_summary hn_run_get_summary(const hn_run *run) {
                           .rejected = s->rejected,
                           .h_last = s->h,
                           .cost = run->clock.cost,
-                          .cpu_seconds = hn_step_clock_read(&run->clock.time),
+                          .cpu_seconds =
+                              hn_step_clock_read(&run->clock.time) + run->clock.cost.elsewhere,
                           .worst_gap = run->watch.worst_gap,
                           .worst_velocity_gap = run->watch.worst_velocity_gap,
                           .worst_energy_change = run->watch.worst_energy_change,

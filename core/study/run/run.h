@@ -36,7 +36,8 @@ typedef struct hn_run_summary {
     long long steps, rejected;
     double h_last;
     hn_cost cost;
-    double cpu_seconds; ///< thread CPU time spent stepping (sampling and output excluded)
+    /// CPU time of this thread spent stepping (sampling and output excluded), and cost.elsewhere
+    double cpu_seconds;
     /// over all accepted steps that were checked, and all samples between steps
     double worst_gap, worst_velocity_gap;
     double worst_energy_change; ///< less the work of drives, dampers and loads [J]

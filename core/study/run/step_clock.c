@@ -50,6 +50,11 @@ static double own_ticks(const hn_step_clock *c) {
     return c->n_read > 0 ? c->own * c->n / c->n_read : 0;
 }
 
+/// CPU time of the present block until now, or until the end of its last interval.
+static double used_cpu(const hn_step_clock *c) {
+    return (c->cpu_stopped > 0 ? c->cpu_stopped : hn_clock_thread()) - c->cpu_mark;
+}
+
 /// CPU time of the intervals of the present block. Undisturbed it is their wall time. A thread that
 /// had to wait for a processor has used less: then the steps get their share of the block.
 static double calc_block(const hn_step_clock *c) {
@@ -57,8 +62,7 @@ static double calc_block(const hn_step_clock *c) {
     if (c->n == 0 || !(all > 0) || !(passed > 0)) {
         return 0;
     }
-    const double cpu = hn_clock_thread() - c->cpu_mark,
-                 tick = (hn_clock_wall() - c->wall_mark) / passed;
+    const double cpu = used_cpu(c), tick = (hn_clock_wall() - c->wall_mark) / passed;
     return fmin(own_ticks(c) * tick, cpu * c->own / all);
 }
 
@@ -69,7 +73,7 @@ static void open_block(hn_step_clock *c) {
     c->until = c->n_read = 0;
     c->cpu_mark = hn_clock_thread();
     c->wall_mark = hn_clock_wall();
-    c->own = c->between = 0;
+    c->own = c->between = c->cpu_stopped = 0;
     c->mark = c->stopped = hn_clock_ticks();
 }
 
@@ -87,7 +91,12 @@ void hn_step_clock_start(hn_step_clock *c) {
     // the end of the time after an interval that was read, the beginning of one that is
     c->started = hn_clock_ticks();
     const double between = c->started - c->stopped;
-    c->between += read_last && between > 0 && between < c->pause ? between : 0;
+    if (c->cpu_stopped > 0) {
+        c->cpu_mark += hn_clock_thread() - c->cpu_stopped;
+        c->cpu_stopped = 0;
+    } else {
+        c->between += read_last && between > 0 && between < c->pause ? between : 0;
+    }
 }
 
 void hn_step_clock_stop(hn_step_clock *c) {
@@ -97,6 +106,7 @@ void hn_step_clock_stop(hn_step_clock *c) {
     }
     c->stopped = hn_clock_ticks();
     c->own += fmax(0, c->stopped - c->started - c->grain);
+    c->cpu_stopped = c->stopped - c->started > c->pause ? hn_clock_thread() : 0;
     if (++c->n_read == BLOCK) {
         c->seconds += calc_block(c);
         c->n = 0;
@@ -108,5 +118,5 @@ void hn_step_clock_stop(hn_step_clock *c) {
 double hn_step_clock_read(const hn_step_clock *c) {
     const double tick = LONG_BREAK / c->pause;
     const double own = own_ticks(c) * tick;
-    return c->seconds + (c->n > 0 ? fmin(own, hn_clock_thread() - c->cpu_mark) : 0);
+    return c->seconds + (c->n > 0 ? fmin(own, used_cpu(c)) : 0);
 }

@@ -5,7 +5,9 @@
 // clock of a thread is a call into the kernel and takes as long as a small mechanism's step, so it
 // is read once for a block of intervals. The processor's counter, which needs no such call, says
 // which share of the block the steps took. If intervals are so short that reading the counter
-// twice in each would show, it is read in one interval of SPARSE.
+// twice in each would show, it is read in one interval of SPARSE. After a long interval, which may
+// have waited for another process, the CPU clock is read too: what the thread does until the next
+// interval then counts for nobody here.
 
 #include <stdbool.h>
 
@@ -16,6 +18,7 @@ typedef struct hn_step_clock {
 
     double cpu_mark;         ///< CPU clock at the beginning of the present block [s]
     double started, stopped; ///< counter at the ends of the last interval [ticks]
+    double cpu_stopped;      ///< CPU clock at the end of a long one [s]; 0: it was not read
     double wall_mark, mark;  ///< wall clock [s] and counter then
     double own, between;     ///< in the block's intervals that are read, and after them [ticks]
     int n;                   ///< intervals of the block; 0: the next one opens a block

@@ -17,7 +17,7 @@ int hn_timing_batch(hn_run *run, double T, double first_cpu, const hn_walk_limit
         const double w = hn_clock_wall(), c = hn_clock_thread();
         // straight through: clocks between steps would be part of what is measured
         const hn_status status = hn_run_advance(run, T);
-        cpu += hn_clock_thread() - c;
+        cpu += hn_clock_thread() - c + hn_run_get_summary(run).cost.elsewhere;
         wall += hn_clock_wall() - w;
         *seconds = cpu / (i + 1);
         if (status != HN_OK || (limits->stop && limits->stop(limits->user))) {

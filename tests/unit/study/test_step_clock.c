@@ -105,6 +105,26 @@ static void time_asleep_is_nobodys(void **state) {
     assert_true(read <= hn_clock_thread() - begin);
 }
 
+// a program that is asked sleeps; what others compute until the next question is not its time
+static void work_of_others_after_a_long_wait_is_nobodys(void **state) {
+    (void)state;
+    const struct timespec wait = {.tv_nsec = 300000};
+    hn_step_clock c;
+    double others = 0;
+    hn_step_clock_create(&c);
+    for (int i = 0; i < 3 * BLOCK / 2; i++) {
+        hn_step_clock_start(&c);
+        nanosleep(&wait, NULL);
+        hn_step_clock_stop(&c);
+        const double begin = hn_clock_thread();
+        while (hn_clock_thread() - begin < 3e-4) {
+            work(ROUNDS / 100);
+        }
+        others += hn_clock_thread() - begin;
+    }
+    assert_true(hn_step_clock_read(&c) < 0.5 * others);
+}
+
 static void clear_forgets(void **state) {
     (void)state;
     hn_step_clock c;
@@ -137,6 +157,7 @@ int main(void) {
         cmocka_unit_test(short_intervals_are_counted_by_some_of_them),
         cmocka_unit_test(long_intervals_are_all_read),
         cmocka_unit_test(time_asleep_is_nobodys),
+        cmocka_unit_test(work_of_others_after_a_long_wait_is_nobodys),
         cmocka_unit_test(clear_forgets),
         cmocka_unit_test(reading_changes_nothing),
     };
