@@ -3,6 +3,8 @@
 #include "render/snapshot_shapes.h"
 
 #include "base/units.h"
+#include "render/snapshot_joints.h"
+#include "render/snapshot_pen.h"
 
 #include <math.h>
 #include <stdbool.h>
@@ -20,150 +22,18 @@ enum { ROUND = 12, ARC_STEPS = 8 };    // corners of a circle at least; pieces o
 static const double GROUND_LINE = 0.8; // lines of supports, of other outlines
 static const double RAIL = 0.7;        // lines of guides, of those
 
-/// Describes how one pose is drawn: colours of outline and fill, and whether it is a mere line.
-typedef struct pen {
-    hn_canvas *c;
-    const hn_sheet *s;
-    const hn_drawing *d;
-    const double *points; ///< world
-    hn_stroke outline;
-    hn_paint fill;
-    int has_fill, is_reference;
-} pen;
-
-static void at(const pen *p, int point, double out[2]) {
-    hn_sheet_pixel(p->s, p->points + 3 * point, out);
-}
-
-static double bar_width(const pen *p, const hn_shape *shape) {
-    return shape->width > 0 ? fmax(4, p->s->scale * shape->width) : p->s->bar;
-}
-
-/// Unit vector from a to b in pixels, (1, 0) where they coincide; returns the distance.
-static double direction(const double a[2], const double b[2], double out[2]) {
-    const double dx = b[0] - a[0], dy = b[1] - a[1], length = hypot(dx, dy);
-    out[0] = length > 0 ? dx / length : 1;
-    out[1] = length > 0 ? dy / length : 0;
-    return length;
-}
-
-static void draw_outlined(const pen *p, const double *xy, int n) {
-    hn_stroke closed = p->outline;
-    closed.closed = 1;
-    if (p->has_fill) {
-        hn_canvas_polygon(p->c, xy, n, p->fill);
-    }
-    hn_canvas_line(p->c, xy, n, &closed);
-}
-
 // ---- kinds ----
 
-static void draw_bar(const pen *p, const hn_shape *shape) {
+static void draw_bar(const hn_pen *p, const hn_shape *shape) {
     double a[2], b[2], xy[2 * HN_CAPSULE_POINTS];
-    at(p, shape->p, a);
-    at(p, shape->q, b);
+    hn_pen_at(p, shape->p, a);
+    hn_pen_at(p, shape->q, b);
     if (p->is_reference) {
         hn_canvas_segment(p->c, a[0], a[1], b[0], b[1], &p->outline);
         return;
     }
-    draw_outlined(p, xy, hn_canvas_capsule(a[0], a[1], b[0], b[1], bar_width(p, shape), xy));
-}
-
-// ---- symbols of joints, as ISO 3952 draws them ----
-
-static bool same_place(const pen *p, int a, int b) {
-    const double *x = p->points + 3 * a, *y = p->points + 3 * b;
-    return fabs(x[0] - y[0]) + fabs(x[1] - y[1]) + fabs(x[2] - y[2]) < 1e-3 * p->s->scale_bar;
-}
-
-/// The angle [rad, clockwise from x] at which the bar of the body that holds the joint leaves it,
-/// or the other body's; a support is below. False: no such bar is there.
-static bool find_bar(const pen *p, const hn_shape *joint, bool of_holder, double *angle) {
-    const bool on_ground = joint->kind == HN_SHAPE_GROUND;
-    double longest = 0;
-    if (of_holder && on_ground) {
-        *angle = asin(1);
-        return true;
-    }
-    for (int i = 0; i < p->d->n_shapes; i++) {
-        const hn_shape *bar = &p->d->shapes[i];
-        if (bar->kind != HN_SHAPE_BAR || (bar->body == joint->body) != of_holder) {
-            continue;
-        }
-        for (int end = 0; end < 2; end++) {
-            double a[2], b[2], u[2];
-            at(p, end ? bar->q : bar->p, a);
-            at(p, end ? bar->p : bar->q, b);
-            const double length = direction(a, b, u);
-            if (same_place(p, end ? bar->q : bar->p, joint->p) && length > longest) {
-                longest = length;
-                *angle = atan2(u[1], u[0]);
-            }
-        }
-    }
-    return longest > 0;
-}
-
-/// A ball in the socket of the body that holds it.
-static void draw_ball(const pen *p, const double a[2], const hn_shape *shape) {
-    const double ball = fmax(3, 0.46 * p->s->bar), socket = ball + fmax(2.5, 2 * p->s->line);
-    const hn_stroke wire = {.paint = p->outline.paint, .width = p->outline.width};
-    const hn_stroke cup = {.paint = p->outline.paint, .width = 1.5 * p->outline.width};
-    const hn_paint paper = hn_paint_solid(hn_surface_get(hn_canvas_theme(p->c))->paper);
-    double holder = asin(1);
-    if (!find_bar(p, shape, true, &holder)) {
-        find_bar(p, shape, false, &holder);
-    }
-    if (p->has_fill) {
-        hn_canvas_disc(p->c, a[0], a[1], socket, paper);
-        hn_canvas_disc(p->c, a[0], a[1], ball, p->fill);
-    }
-    hn_canvas_ring(p->c, a[0], a[1], ball, &wire);
-    hn_canvas_arc(p->c, a[0], a[1], socket, holder - 1.9, holder + 1.9, &cup);
-}
-
-/// Two forks and the cross between them.
-static void draw_universal(const pen *p, const double a[2], const hn_shape *shape) {
-    const double fork = fmax(5, 0.85 * p->s->bar), pin = 0.8 * fork;
-    const hn_stroke wire = {.paint = p->outline.paint, .width = p->outline.width};
-    double angle[2] = {asin(1), -asin(1)};
-    const bool held = find_bar(p, shape, true, &angle[0]);
-    const bool holds = find_bar(p, shape, false, &angle[1]);
-    angle[0] = !held && holds ? angle[1] + acos(-1) : angle[0];
-    angle[1] = !holds ? angle[0] + acos(-1) : angle[1];
-    if (p->has_fill) {
-        hn_canvas_disc(p->c, a[0], a[1], fork,
-                       hn_paint_solid(hn_surface_get(hn_canvas_theme(p->c))->paper));
-    }
-
-    // the pin of the first fork lies across it, the other across that
-    for (int i = 0; i < 2; i++) {
-        const double across = angle[0] + (i ? 0 : asin(1));
-        hn_canvas_segment(p->c, a[0] - pin * cos(across), a[1] - pin * sin(across),
-                          a[0] + pin * cos(across), a[1] + pin * sin(across), &wire);
-        hn_canvas_arc(p->c, a[0], a[1], fork, angle[i] - 1.2, angle[i] + 1.2, &wire);
-    }
-}
-
-static void draw_pivot(const pen *p, const hn_shape *shape) {
-    if (p->is_reference) {
-        return;
-    }
-    double a[2];
-    if (shape->joint == HN_JOINT_SPHERICAL || shape->joint == HN_JOINT_UNIVERSAL) {
-        at(p, shape->p, a);
-        (shape->joint == HN_JOINT_SPHERICAL ? draw_ball : draw_universal)(p, a, shape);
-        return;
-    }
-    at(p, shape->p, a);
-    const hn_stroke ring = {.paint = p->outline.paint,
-                            .width = p->has_fill ? p->s->line : 0.6 * p->s->line};
-    const double r = fmax(2.5, 0.28 * p->s->bar);
-    if (p->has_fill) {
-        hn_canvas_disc(p->c, a[0], a[1], r,
-                       hn_paint_solid(hn_surface_get(hn_canvas_theme(p->c))->paper));
-    }
-    hn_canvas_ring(p->c, a[0], a[1], r, &ring);
+    hn_pen_outlined(p, xy,
+                    hn_canvas_capsule(a[0], a[1], b[0], b[1], hn_pen_bar_width(p, shape), xy));
 }
 
 /// The direction across a line from a to b [m, world], to its right, as it is seen: level with the
@@ -173,7 +43,7 @@ static void find_across(const hn_sheet *s, const double *a, const double *b, dou
     double from[2], to[2], u[2];
     hn_sheet_pixel(s, a, from);
     hn_sheet_pixel(s, b, to);
-    direction(from, to, u);
+    hn_pen_direction(from, to, u);
     out[0] = -u[1];
     out[1] = u[0];
     if (s->is_slanted && length > 0) {
@@ -183,27 +53,27 @@ static void find_across(const hn_sheet *s, const double *a, const double *b, dou
     }
 }
 
-static void draw_slider(const pen *p, const hn_shape *shape) {
+static void draw_slider(const hn_pen *p, const hn_shape *shape) {
     double a[2], b[2], u[2], v[2], xy[8];
-    at(p, shape->p, a);
-    at(p, shape->q, b);
-    direction(a, b, u);
+    hn_pen_at(p, shape->p, a);
+    hn_pen_at(p, shape->q, b);
+    hn_pen_direction(a, b, u);
     find_across(p->s, p->points + 3 * shape->p, p->points + 3 * shape->q, v);
-    const double w = bar_width(p, shape), along = 1.3 * w, across = 0.85 * w;
+    const double w = hn_pen_bar_width(p, shape), along = 1.3 * w, across = 0.85 * w;
     for (int i = 0; i < 4; i++) {
         const double i_along = (i == 0 || i == 3 ? -1 : 1) * along,
                      i_across = (i < 2 ? -1 : 1) * across;
         xy[2 * i] = a[0] + i_along * u[0] + i_across * v[0];
         xy[2 * i + 1] = a[1] + i_along * u[1] + i_across * v[1];
     }
-    draw_outlined(p, xy, 4);
+    hn_pen_outlined(p, xy, 4);
 }
 
-static void draw_spring(const pen *p, const hn_shape *shape) {
+static void draw_spring(const hn_pen *p, const hn_shape *shape) {
     double a[2], b[2], u[2], xy[2 * (2 * COILS + 4)];
-    at(p, shape->p, a);
-    at(p, shape->q, b);
-    const double length = direction(a, b, u), lead = 0.15 * length, swing = 0.6 * p->s->bar;
+    hn_pen_at(p, shape->p, a);
+    hn_pen_at(p, shape->q, b);
+    const double length = hn_pen_direction(a, b, u), lead = 0.15 * length, swing = 0.6 * p->s->bar;
     int n = 0;
 
     // a straight lead, the coils to either side, a straight lead
@@ -226,7 +96,7 @@ static void draw_spring(const pen *p, const hn_shape *shape) {
 
 /// A piston in an open pot: `local` gives points along and across the line as shares of its length
 /// and of the bar.
-static void draw_local(const pen *p, const double a[2], const double u[2], double length,
+static void draw_local(const hn_pen *p, const double a[2], const double u[2], double length,
                        const double *local, int n) {
     double xy[8];
     for (int i = 0; i < n; i++) {
@@ -238,14 +108,14 @@ static void draw_local(const pen *p, const double a[2], const double u[2], doubl
     hn_canvas_line(p->c, xy, n, &solid);
 }
 
-static void draw_damper(const pen *p, const hn_shape *shape) {
+static void draw_damper(const hn_pen *p, const hn_shape *shape) {
     static const double rod[] = {0, 0, 0.5, 0}, piston[] = {0.5, -0.38, 0.5, 0.38};
     static const double pot[] = {0.36, -0.55, 0.66, -0.55, 0.66, 0.55, 0.36, 0.55},
                         tail[] = {0.66, 0, 1, 0};
     double a[2], b[2], u[2];
-    at(p, shape->p, a);
-    at(p, shape->q, b);
-    const double length = direction(a, b, u);
+    hn_pen_at(p, shape->p, a);
+    hn_pen_at(p, shape->q, b);
+    const double length = hn_pen_direction(a, b, u);
     draw_local(p, a, u, length, rod, 2);
     draw_local(p, a, u, length, piston, 2);
     draw_local(p, a, u, length, pot, 4);
@@ -286,7 +156,7 @@ static void circle_point(const double *a, const double *b, const double centre[3
     }
 }
 
-static void draw_polygon(const pen *p, const hn_shape *shape) {
+static void draw_polygon(const hn_pen *p, const hn_shape *shape) {
     double xy[2 * MAX_POLYGON], centre[3], world[3];
     const double *corner = p->points + 3 * shape->p;
     HN_ASSERT(shape->n <= MAX_POLYGON);
@@ -297,7 +167,7 @@ static void draw_polygon(const pen *p, const hn_shape *shape) {
         hn_sheet_pixel(p->s, steps > 1 ? world : a, xy + 2 * i);
     }
     if (shape->n >= 3) {
-        draw_outlined(p, xy, shape->n * steps);
+        hn_pen_outlined(p, xy, shape->n * steps);
     }
 }
 
@@ -318,10 +188,10 @@ static double support_size(const hn_sheet *s) {
     return 1.25 * s->bar;
 }
 
-static void draw_ground(const pen *p, const hn_shape *shape) {
+static void draw_ground(const hn_pen *p, const hn_shape *shape) {
     double a[2], right[2], down[2], triangle[6];
     const double size = support_size(p->s);
-    at(p, shape->p, a);
+    hn_pen_at(p, shape->p, a);
     find_upright(p->s, right, down);
     const double foot[2] = {a[0] + size * down[0], a[1] + size * down[1]};
     for (int k = 0; k < 2; k++) {
@@ -329,7 +199,7 @@ static void draw_ground(const pen *p, const hn_shape *shape) {
         triangle[2 + k] = foot[k] + 0.75 * size * right[k];
         triangle[4 + k] = foot[k] - 0.75 * size * right[k];
     }
-    draw_outlined(p, triangle, 3);
+    hn_pen_outlined(p, triangle, 3);
     hn_canvas_hatch_plane(p->c, foot[0], foot[1], 2.6 * size, right, down, &p->outline);
 }
 
@@ -356,7 +226,7 @@ static guide lay_guide(const hn_sheet *s, const double *p, const double *q, doub
     double a[2], b[2];
     hn_sheet_pixel(s, p, a);
     hn_sheet_pixel(s, q, b);
-    direction(a, b, g.u);
+    hn_pen_direction(a, b, g.u);
     find_across(s, p, q, g.away);
     const double back[2] = {-g.u[0], -g.u[1]};
     const double ahead = reach(s, a, g.u) + 1.5 * width, behind = reach(s, a, back) + 1.5 * width;
@@ -368,10 +238,10 @@ static guide lay_guide(const hn_sheet *s, const double *p, const double *q, doub
     return g;
 }
 
-static void draw_guide(const pen *p, const hn_shape *shape) {
+static void draw_guide(const hn_pen *p, const hn_shape *shape) {
     const double *points = p->points;
     const guide g =
-        lay_guide(p->s, points + 3 * shape->p, points + 3 * shape->q, bar_width(p, shape));
+        lay_guide(p->s, points + 3 * shape->p, points + 3 * shape->q, hn_pen_bar_width(p, shape));
 
     // one rail is hatched as ground, the other a mere line
     hn_stroke rail = p->outline;
@@ -385,11 +255,11 @@ static void draw_guide(const pen *p, const hn_shape *shape) {
 }
 
 /// The pins of a spring or damper: neither end hangs in the air.
-static void draw_ends(const pen *p, const hn_shape *shape) {
+static void draw_ends(const hn_pen *p, const hn_shape *shape) {
     hn_shape end = *shape;
-    draw_pivot(p, &end);
+    hn_joint_draw(p, &end);
     end.p = shape->q;
-    draw_pivot(p, &end);
+    hn_joint_draw(p, &end);
 }
 
 // ---- one table ----
@@ -400,15 +270,15 @@ typedef struct shape_row {
     hn_shape_kind kind;
     int order; ///< what is drawn first within a pose: guides and bars beneath pivots
     int belongs_to_ground;
-    void (*draw)(const pen *p, const hn_shape *shape);
+    void (*draw)(const hn_pen *p, const hn_shape *shape);
 } shape_row;
 
 static const shape_row rows[] = {
     {HN_SHAPE_GUIDE, 0, 1, draw_guide},     {HN_SHAPE_GROUND, 1, 1, draw_ground},
     {HN_SHAPE_POLYGON, 0, 0, draw_polygon}, {HN_SHAPE_SPRING, 1, 0, draw_spring},
     {HN_SHAPE_DAMPER, 1, 0, draw_damper},   {HN_SHAPE_SLIDER, 2, 0, draw_slider},
-    {HN_SHAPE_BAR, 3, 0, draw_bar},         {HN_SHAPE_PIVOT, 4, 0, draw_pivot},
-    {HN_SHAPE_GROUND, 4, 0, draw_pivot}, // its pin, above the bars
+    {HN_SHAPE_BAR, 3, 0, draw_bar},         {HN_SHAPE_PIVOT, 4, 0, hn_joint_draw},
+    {HN_SHAPE_GROUND, 4, 0, hn_joint_draw}, // its pin, above the bars
     {HN_SHAPE_SPRING, 4, 0, draw_ends},     {HN_SHAPE_DAMPER, 4, 0, draw_ends},
 };
 enum { N_ROWS = sizeof rows / sizeof *rows, N_ORDERS = 5 };
@@ -423,7 +293,7 @@ static const shape_row *row_of(hn_shape_kind kind, int order, int ground) {
 }
 
 /// Returns how far a shape's middle lies towards the viewer.
-static double middle_depth(const pen *p, const hn_shape *shape) {
+static double middle_depth(const hn_pen *p, const hn_shape *shape) {
     const int ends[2] = {shape->p,
                          shape->kind == HN_SHAPE_POLYGON || shape->q < 0 ? shape->p : shape->q};
     double depth = 0;
@@ -436,12 +306,12 @@ static double middle_depth(const pen *p, const hn_shape *shape) {
 }
 
 /// A pin is seen before every bar that it holds.
-static double pin_depth(const pen *p, const hn_drawing *d, const hn_shape *pin) {
+static double pin_depth(const hn_pen *p, const hn_drawing *d, const hn_shape *pin) {
     double depth = middle_depth(p, pin);
     for (int i = 0; i < d->n_shapes; i++) {
         const hn_shape *bar = &d->shapes[i];
         if (bar->kind == HN_SHAPE_BAR &&
-            (same_place(p, bar->p, pin->p) || same_place(p, bar->q, pin->p))) {
+            (hn_pen_same_place(p, bar->p, pin->p) || hn_pen_same_place(p, bar->q, pin->p))) {
             depth = fmax(depth, middle_depth(p, bar));
         }
     }
@@ -466,8 +336,8 @@ static void sort_by_depth(int *shapes, double *depth, int n) {
 }
 
 /// The pen for a shape at a depth, 0 (farthest) to 1: what is far is paler.
-static pen at_depth(const pen *p, double near) {
-    pen here = *p;
+static hn_pen at_depth(const hn_pen *p, double near) {
+    hn_pen here = *p;
     const hn_theme theme = hn_canvas_theme(p->c);
     if (p->has_fill) {
         const double share = FARTHEST + (1 - FARTHEST) * near;
@@ -478,7 +348,7 @@ static pen at_depth(const pen *p, double near) {
 }
 
 /// Shape and order in one number, so that they are sorted together.
-static void draw_by_depth(const pen *p, const hn_drawing *d, int ground) {
+static void draw_by_depth(const hn_pen *p, const hn_drawing *d, int ground) {
     int n = 0;
     for (int i = 0; i < d->n_shapes; i++) {
         for (int order = 0; order < N_ORDERS; order++) {
@@ -495,7 +365,7 @@ static void draw_by_depth(const pen *p, const hn_drawing *d, int ground) {
         const double back = p->s->depth[0], deep = p->s->depth[n - 1] - back;
         const bool flat = deep <= 2 * PIN_NEARER * p->s->scale_bar; // a plane seen from behind
         const double near = flat ? 1 : (p->s->depth[k] - back) / deep;
-        const pen here = at_depth(p, near);
+        const hn_pen here = at_depth(p, near);
         row_of(shape->kind, p->s->shapes[k] % N_ORDERS, ground)->draw(&here, shape);
     }
 }
@@ -509,13 +379,13 @@ typedef struct rim {
 
 /// Finds the bars of the ground, as of a ring gear, that are a circle in pieces. False: they are
 /// not.
-static bool find_rim(const pen *p, const hn_drawing *d, rim *out) {
+static bool find_rim(const hn_pen *p, const hn_drawing *d, rim *out) {
     out->n = 0;
     for (int i = 0; i < d->n_shapes; i++) {
         const hn_shape *bar = &d->shapes[i];
         if (bar->kind == HN_SHAPE_BAR && bar->body == HN_GROUND) {
             if (out->n == MAX_POLYGON / ARC_STEPS ||
-                (out->n > 0 && !same_place(p, out->bar->q, bar->p))) {
+                (out->n > 0 && !hn_pen_same_place(p, out->bar->q, bar->p))) {
                 return false;
             }
             out->bar = bar;
@@ -526,7 +396,7 @@ static bool find_rim(const pen *p, const hn_drawing *d, rim *out) {
 }
 
 /// Draws a circle with the centre of the rim, so many pixels outside of it.
-static void draw_rim_line(const pen *p, const rim *r, double beyond, const hn_stroke *stroke) {
+static void draw_rim_line(const hn_pen *p, const rim *r, double beyond, const hn_stroke *stroke) {
     double xy[2 * MAX_POLYGON], at[3], radius = 0;
     for (int i = 0; i < r->n * ARC_STEPS; i++) {
         const double *a = r->corner[i / ARC_STEPS], *b = r->corner[(i / ARC_STEPS + 1) % r->n];
@@ -540,8 +410,8 @@ static void draw_rim_line(const pen *p, const rim *r, double beyond, const hn_st
     hn_canvas_line(p->c, xy, r->n * ARC_STEPS, stroke);
 }
 
-static void draw_rim(const pen *p, const rim *r) {
-    const double width = bar_width(p, r->bar);
+static void draw_rim(const hn_pen *p, const rim *r) {
+    const double width = hn_pen_bar_width(p, r->bar);
     hn_stroke line = p->outline;
     line.closed = 1;
     if (p->has_fill) {
@@ -555,7 +425,7 @@ static void draw_rim(const pen *p, const rim *r) {
     draw_rim_line(p, r, width / 2, &line);
 }
 
-static void draw_shapes(const pen *p, const hn_drawing *d, int ground) {
+static void draw_shapes(const hn_pen *p, const hn_drawing *d, int ground) {
     rim r;
     const bool has_rim = !p->s->in_space && find_rim(p, d, &r);
     if (has_rim && !ground) {
@@ -580,13 +450,13 @@ static void draw_shapes(const pen *p, const hn_drawing *d, int ground) {
 void hn_snapshot_ground(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
                         const hn_snapshot_pose *pose) {
     const hn_surface *surface = hn_surface_get(hn_canvas_theme(c));
-    const pen p = {.c = c,
-                   .s = s,
-                   .d = d,
-                   .points = pose->points,
-                   .outline = hn_stroke_solid(surface->muted, GROUND_LINE * s->line),
-                   .fill = hn_paint_solid(surface->raised),
-                   .has_fill = 1};
+    const hn_pen p = {.c = c,
+                      .s = s,
+                      .d = d,
+                      .points = pose->points,
+                      .outline = hn_stroke_solid(surface->muted, GROUND_LINE * s->line),
+                      .fill = hn_paint_solid(surface->raised),
+                      .has_fill = 1};
     draw_shapes(&p, d, 1);
 }
 
@@ -649,11 +519,11 @@ static void draw_traces(hn_canvas *c, const hn_sheet *s, const hn_snapshot_pose 
 void hn_snapshot_pose_draw(hn_canvas *c, const hn_sheet *s, const hn_drawing *d,
                            const hn_snapshot_pose *pose, bool is_selected, int n_traces) {
     const hn_theme theme = hn_canvas_theme(c);
-    pen p = {.c = c,
-             .s = s,
-             .d = d,
-             .points = pose->points,
-             .outline = hn_slot_stroke(theme, pose->slot, s->line)};
+    hn_pen p = {.c = c,
+                .s = s,
+                .d = d,
+                .points = pose->points,
+                .outline = hn_slot_stroke(theme, pose->slot, s->line)};
     p.is_reference = pose->slot == HN_LOOK_REFERENCE && !is_selected;
     p.has_fill = is_selected;
     p.fill = hn_paint_solid(hn_tint(theme, p.outline.paint.rgb, SELECTED_TINT));
