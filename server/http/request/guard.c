@@ -337,7 +337,16 @@ bool hn_is_json_type(const char *content_type) {
 
 int hn_guard_body_type(hn_request *r) {
     const char *type = hn_request_header(r, "Content-Type");
-    if (!r->route->fields || hn_is_json_type(type)) {
+    const char *coding = hn_request_header(r, "Content-Encoding");
+    if (!r->route->fields) {
+        return 1;
+    }
+    if (coding && *coding && strcasecmp(coding, "identity") != 0) {
+        hn_reply_problem(r, HN_PROBLEM_MEDIA_TYPE, "send the text itself, uncompressed",
+                         "the Content-Encoding of the body is '%.100s'", coding);
+        return 0;
+    }
+    if (hn_is_json_type(type)) {
         return 1;
     }
     hn_reply_problem(r, HN_PROBLEM_MEDIA_TYPE, "Content-Type: application/json; the text in UTF-8",

@@ -26,6 +26,14 @@ static const struct {
     {505, HN_PROBLEM_VERSION, "the request line does not end in HTTP/1.0 or HTTP/1.1"},
 };
 
+/// The library finds itself at fault where its buffer is full of what no handler has taken. The
+/// server takes all of a body that comes: only the line before a chunk can be so long.
+static unsigned find_status(struct MHD_Connection *connection, unsigned status) {
+    const bool is_chunked = hn_microhttpd_functions.MHD_lookup_connection_value(
+                                connection, MHD_HEADER_KIND, "Transfer-Encoding") != NULL;
+    return status == 500 && is_chunked ? 400 : status;
+}
+
 /// The problem document of a status; empty where the library's page has to do.
 static void put_document(hn_strbuf *b, unsigned status) {
     for (size_t i = 0; i < sizeof REFUSALS / sizeof *REFUSALS; i++) {
@@ -70,9 +78,10 @@ static enum MHD_Result answer_and_close(struct MHD_Connection *connection, unsig
     return MHD_NO;
 }
 
-enum MHD_Result MHD_queue_response(struct MHD_Connection *connection, unsigned status,
+enum MHD_Result MHD_queue_response(struct MHD_Connection *connection, unsigned queued_status,
                                    struct MHD_Response *page) {
     const hn_microhttpd *f = &hn_microhttpd_functions;
+    const unsigned status = find_status(connection, queued_status);
     hn_strbuf document;
     hn_strbuf_init(&document);
     put_document(&document, status);
