@@ -347,6 +347,9 @@ class Stateless(driver.ServerCase):
         for answer in (self.server.ask("GET", "/api/v1/scenes/four-bar/export?language=c&blanks=true"),
                        self.post("export", {"scene": "four-bar", "language": "c", "blanks": True})):
             self.assertEqual((answer.status, answer.body.count(b"YOUR PART")), (200, 4))
+        self.assertNotIn(b"YOUR PART", self.server.ask("GET", "/api/v1/scenes/four-bar/export?language=c&blanks=false").body)
+        unclear = self.server.ask("GET", "/api/v1/scenes/four-bar/export?language=c&blanks=1")
+        self.assertEqual((unclear.status, unclear.json()["hint"]), (422, "blanks=true"))
         # every language that is listed, and what is not
         for language in self.server.ask("GET", "/api/v1/languages").json()["languages"]:
             one = self.server.ask("GET", "/api/v1/scenes/pendulum/export?language=" + language["name"])

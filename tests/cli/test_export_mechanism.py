@@ -228,6 +228,11 @@ class Mechanism(unittest.TestCase):
             result = call("export", "four-bar", *words)
             self.assertEqual((result.returncode, result.stdout), (INPUT, ""))
             self.assertIn(said, result.stderr)
+        # a language is no format, and a format no language: each names the option of the other
+        for words, said in ((("--format", "modelica"), "--language modelica writes a program"), (("--language", "urdf"), "--format urdf writes the mechanism")):
+            result = call("export", "four-bar", *words)
+            self.assertEqual(result.returncode, INPUT)
+            self.assertIn(said, " ".join(result.stderr.split()))
 
 
 class Urdf(unittest.TestCase):

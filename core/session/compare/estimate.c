@@ -14,8 +14,9 @@ static double over_tolerance(const hn_estimate *e, const hn_method_spec *spec) {
 
 void hn_estimate_put_json(hn_strbuf *b, const hn_accuracy *accuracy, const hn_method_spec *spec,
                           const hn_accuracy_track *track, double t_run) {
-    const hn_estimate e = hn_accuracy_estimate(accuracy, track, t_run);
+    hn_estimate e = hn_accuracy_estimate(accuracy, track, t_run);
     const double none = nan("");
+    e.known = e.known && t_run > 0; // the start is nobody's motion
     hn_json_key(b, "error_estimate");
     hn_json_object(b);
     hn_json_put_number(b, "q", e.known ? e.q : none);
@@ -24,7 +25,7 @@ void hn_estimate_put_json(hn_strbuf *b, const hn_accuracy *accuracy, const hn_me
     hn_json_put_number(b, "own", e.known ? e.own : none);
     hn_json_put_number(b, "t", e.known ? e.t : none);
     hn_json_put_number(b, "over_rtol", over_tolerance(&e, spec));
-    hn_json_put_string(b, "reason", e.reason);
+    hn_json_put_string(b, "reason", t_run > 0 ? e.reason : "nothing was computed beyond the start");
     hn_json_end_object(b);
 }
 

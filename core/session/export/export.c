@@ -7,6 +7,7 @@
 #include "dynamics/compile/compile.h"
 #include "integrators/method/method_spec.h"
 #include "session/export/calls.h"
+#include "session/export/mechanism.h"
 #include "session/export/own_steps.h"
 #include "session/export/places.h"
 #include "session/export/states.h"
@@ -36,7 +37,11 @@ static hn_status choose_language(hn_exporter *e, const char *name, hn_diags *dia
     for (int i = 0; i < n && i < 32; i++) {
         names[i] = all[i].name;
     }
-    hn_suggest_or_list(hint, name, names, n, "languages: ");
+    if (hn_mechanism_is_format(name)) {
+        snprintf(hint, sizeof hint, "--format %s writes the mechanism itself", name);
+    } else {
+        hn_suggest_or_list(hint, name, names, n, "languages: ");
+    }
     return hn_diags_add(diags, HN_ERR_INPUT, "/language", hint,
                         "'%.40s' is not a language of export", name);
 }

@@ -3,11 +3,13 @@
 
 #include "session/export/xml_attribute.h"
 
+#include "export/language.h"
 #include "linalg/small3.h"
 #include "session/export/mjcf_writer.h"
 #include "session/export/urdf_writer.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 static const double ALIGNED = 1e-9; // sine of the angle between axes that count as parallel [-]
@@ -37,6 +39,10 @@ static const model_format *find_format(const char *name) {
     return NULL;
 }
 
+bool hn_mechanism_is_format(const char *name) {
+    return find_format(name) != NULL;
+}
+
 const char *hn_mechanism_suffix(const char *format) {
     return find_format(format)->suffix;
 }
@@ -44,7 +50,14 @@ const char *hn_mechanism_suffix(const char *format) {
 static hn_status check_format(const char *name, bool wants_loops, hn_diags *diags) {
     const model_format *found = find_format(name);
     if (!found) {
-        return hn_diags_add(diags, HN_ERR_INPUT, "/format", "--format mjcf or --format urdf",
+        char hint[HN_DIAG_HINT] = "--format mjcf or --format urdf";
+        if (hn_language_find(name)) {
+            snprintf(hint, sizeof hint,
+                     "--format mjcf or --format urdf; --language %s writes a program with the "
+                     "equations",
+                     name);
+        }
+        return hn_diags_add(diags, HN_ERR_INPUT, "/format", hint,
                             "'%.40s' is not a format of export", name);
     }
     return wants_loops && !found->has_loop_file

@@ -23,5 +23,7 @@ HN_MUST_CHECK hn_status hn_model_export_mechanism(hn_strbuf *b, hn_strbuf *loops
 
 /// The ending of a file's name in a known format.
 const char *hn_mechanism_suffix(const char *format);
+/// Returns whether there is a format of this name.
+bool hn_mechanism_is_format(const char *name);
 
 #endif

@@ -153,16 +153,33 @@ static void reply_export(hn_request *r, hn_model *model, const wanted *w) {
     hn_model_free(model);
 }
 
+/// Reads the query `blanks`; false: with a problem as reply.
+static bool read_blanks(hn_request *r, bool *blanks) {
+    const char *text = hn_request_query(r, "blanks");
+    *blanks = text && strcmp(text, "true") == 0;
+    if (!text || *blanks || strcmp(text, "false") == 0) {
+        return true;
+    }
+    hn_diags diags = {0};
+    hn_diags_add(&diags, HN_ERR_INPUT, "/blanks", "blanks=true",
+                 "'%.40s' is neither true nor false", text);
+    hn_reply_diags(r, HN_ERR_INPUT, &diags);
+    return false;
+}
+
 void hn_handle_scene_export(hn_request *r) {
+    bool blanks;
+    if (!read_blanks(r, &blanks)) {
+        return;
+    }
     hn_model *model = hn_catalogue_load_scene(r, 0);
     if (model) {
-        const char *blanks = hn_request_query(r, "blanks");
         const wanted w = {.language = hn_request_query(r, "language"),
                           .method = hn_request_query(r, "method"),
                           .style = hn_request_query(r, "style"),
                           .solver = hn_request_query(r, "solver"),
                           .format = hn_request_query(r, "format"),
-                          .blanks = blanks && strcmp(blanks, "true") == 0};
+                          .blanks = blanks};
         reply_export(r, model, &w);
     }
 }
