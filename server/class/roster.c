@@ -2,6 +2,7 @@
 #include "class/roster.h"
 
 #include "base/file.h"
+#include "class/submitters.h"
 #include "class/zip_file.h"
 #include "grade/student_name.h"
 
@@ -92,7 +93,9 @@ static bool is_noise(const char *name) {
     return name[0] == '.';
 }
 
-static hn_status add(hn_roster *r, const char *folder, const char *name, hn_diag *diag) {
+/// `student`: who it is by a list of the platform; NULL: the name of the entry says it.
+static hn_status add(hn_roster *r, const char *folder, const char *name, const char *student,
+                     hn_diag *diag) {
     struct stat info;
 
     // room for one more
@@ -115,6 +118,11 @@ static hn_status add(hn_roster *r, const char *folder, const char *name, hn_diag
     }
     e->is_folder = lstat(e->path, &info) == 0 && S_ISDIR(info.st_mode);
     find_student(name, e->student);
+    if (student) {
+        hn_student_name_normalise(student, e->student, sizeof e->student);
+        r->n++;
+        return HN_OK;
+    }
 
     // a file of another kind loses its ending too
     char *dot = strrchr(e->student, '.');
@@ -135,13 +143,15 @@ hn_status hn_roster_read(hn_roster *r, const char *folder, hn_diag *diag) {
     }
 
     // all but hidden entries and noise
-    hn_status status = HN_OK;
+    hn_submitters submitters;
+    hn_status status = hn_submitters_read(&submitters, folder, diag);
     for (struct dirent *d; status == HN_OK && (d = readdir(dir)) != NULL;) {
         if (!is_noise(d->d_name)) {
-            status = add(r, folder, d->d_name, diag);
+            status = add(r, folder, d->d_name, hn_submitters_find(&submitters, d->d_name), diag);
         }
     }
     closedir(dir);
+    hn_submitters_reset(&submitters);
     if (status == HN_OK && r->n == 0) {
         return hn_diag_set(diag, HN_ERR_INPUT, NULL, "a folder, a .json or a .zip for each student",
                            "there is nobody in '%.200s'", folder);

@@ -6,7 +6,7 @@
 //
 //   Moodle            Ada Lovelace_4711_assignsubmission_file_/answer.json, or the same as one file
 //   Canvas            lovelaceada_LATE_4711_9999_answer.json
-//   Gradescope        submission_4711/answer.json
+//   Gradescope        submission_4711/answer.json; submission_metadata.yml beside it has the names
 //   GitHub Classroom  exercise-ada/answer.json
 //   anything else     the name of the folder, or of the file without its ending
 

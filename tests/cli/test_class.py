@@ -80,6 +80,23 @@ class Class(unittest.TestCase):
         self.assertEqual([(line["student"], line["status"], line["score"]) for line in lines],
                          [(name, "graded", 8) for name in sorted(("Ada Lovelace", "Alan Turing", "hopper", "noether", "submission_4715", "exercise-euler", "gauss", "lagrange"))])
 
+    def test_an_export_of_gradescope_names_its_students_by_their_mail_address(self):
+        """As its autograder does, so that both grade the same variant."""
+        entries = ("submission_1:\n  :submitters:\n  - :name: Ada Lovelace\n    :sid: '1815'\n    :email: ada@example.org\n  :score: 3.0\n"
+                   "  :results:\n    tests:\n    - output: |\n        :email: nobody@example.org\n"
+                   "submission_2:\r\n  :submitters:\r\n  - :name: Alan Turing\r\n    :email: 'alan@example.org'\r\n  - :name: Grace\n    :email: grace@example.org\n"
+                   "submission_3:\n  :submitters:\n  - :name: \"Emmy Noether\"\n    :sid: ''\n")
+        self.put("submission_metadata.yml", "---\n" + entries)
+        for n in range(1, 5):
+            self.put(f"submission_{n}/answer.json", RIGHT)
+        lines = self.lines()
+        self.assertEqual([(line["student"], line["file"].split("/")[-2]) for line in lines],
+                         [("Emmy Noether", "submission_3"), ("ada@example.org", "submission_1"), ("alan@example.org", "submission_2"), ("submission_4", "submission_4")])
+        # the variant is that of the address: a file that says another student is not graded
+        self.put("submission_1/answer.json", RIGHT.replace("{", '{"student": "ada@example.org", ', 1))
+        self.put("submission_2/answer.json", RIGHT.replace("{", '{"student": "submission_2", ', 1))
+        self.assertEqual([line["status"] for line in self.lines()], ["graded", "graded", "ungradable", "graded"])
+
     def test_what_cannot_be_graded_says_why_and_stops_nobody(self):
         bad = {"empty": "", "words": "I do not know", "nothing": "{}", "numbers": '{"J": [[NaN]]}', "deep": "[" * 100000, "binary": bytes(range(256)) * 40}
         for name, content in bad.items():
