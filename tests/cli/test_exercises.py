@@ -214,7 +214,7 @@ def unproven_exercise(folder):
 
 
 def notes_of_mistakes(_):
-    """Each mistake of a shipped exercise has a whole sentence: it follows 'the note on it'."""
+    """Each mistake of a shipped exercise has a whole sentence: it follows 'probably this mistake'."""
     n = 0
     for path in sorted(glob.glob("lessons/*/problems/*.json")):
         for part in json.loads(read(path))["parts"] if "parts" in json.loads(read(path)) else []:

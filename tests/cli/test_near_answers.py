@@ -264,7 +264,7 @@ def names_in_formulas(folder):
             ("fourbar", "b", "m2*l1*l2*cos(th1-th2)/3", "wrong-factor", "this is 2/3 times the right formula: a number in it is wrong"),
             ("loops", "e", "-l1*w1^2*cos(th1)-3*l2*w2^2*cos(th2)+l3*w3^2*cos(th3)", "wrong-factor", "one term is 3 times as large as it must be"),
             ("closure", "a", "-l1*sin(th1)*u1-l1*sin(th2)*u2", "other-name", "l1 stands where l2 belongs"),
-            ("closure", "a", "-{l1}*sin(th1)*u1-{l1}*sin(th2)*u2", "other-name", "this looks like a known mistake; the note on it: l1 stands where l2 belongs"),
+            ("closure", "a", "-{l1}*sin(th1)*u1-{l1}*sin(th2)*u2", "other-name", "probably this mistake: l1 stands where l2 belongs"),
             ("fourbar", "c", bias.format("m3", "th2"), "other-name", "m3 stands where m2 belongs in one term"),
             ("fourbar", "c", bias.format("m2", "th1"), "other-name", "th1 stands where th2 belongs in one term"),
             ("loops", "e", "-l1*w1^2*cos(th1)-l2*w3^2*cos(th2)+l3*w2^2*cos(th3)", "exchanged-names", "w2 and w3 are exchanged"),
@@ -297,7 +297,7 @@ def two_in_a_formula(folder):
             ("closure", "a", "-l1*sin(th1)*u1-2*l2*sin(th1+th2)*(u1+u2)", "double", "twice the right value: a factor 1/2 is missing",
              "angle 2 is taken from link 1; the angles of the question are absolute")):  # fmt: skip
         found = entry(folder, exercise, part, answer, "--seed", "2")
-        both = re.fullmatch(r"(?:this looks like a known mistake; the note on it: )?two mistakes (?:at once|in one term): (.*); and (.*)", found["explanation"])
+        both = re.fullmatch(r"(?:probably this mistake: )?two mistakes (?:at once|in one term): (.*); and (.*)", found["explanation"])
         expect(f"{exercise} {part} = {answer} has two mistakes", found["mistake"] == mistake and bool(both) and both.groups() == (first, second), str(found))
         expect("they earn less than one", 0 < found["points"] <= found["max_points"] / 4, str(found))
     found = entry(folder, "code", "c", potential.format("", coupler))

@@ -56,8 +56,7 @@ void hn_part_qualify(hn_part_result *results, int n) {
         if (r->likely && shown < 2 && strncmp(r->explanation, says, strlen(says)) != 0) {
             char text[HN_PART_TEXT];
             memcpy(text, r->explanation, sizeof text);
-            snprintf(r->explanation, sizeof r->explanation,
-                     "%s a known mistake; the note on it: %.350s", says, text);
+            snprintf(r->explanation, sizeof r->explanation, "probably this mistake: %.350s", text);
         }
     }
 }

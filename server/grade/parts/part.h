@@ -97,8 +97,8 @@ void hn_part_right(hn_part_result *r);
 /// Begins the one result of an answer: what was handed in, and what is expected. False, with the
 /// result complete, when nothing was handed in.
 bool hn_part_begin(hn_part_result *r, int *n, const cJSON *given, const char *expected);
-/// Begins the sentence of a mistake that chance may explain with "this looks like", unless two
-/// entries show the same mistake.
+/// Begins the sentence of a mistake that chance may explain with "probably this mistake:", unless
+/// two entries show the same mistake.
 void hn_part_qualify(hn_part_result *results, int n);
 /// The member of an answer with this name, or else the first one in another spelling of it (θ2,
 /// theta_2 for th2); NULL: none.

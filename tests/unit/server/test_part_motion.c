@@ -175,7 +175,7 @@ static void a_slip_is_certain_only_where_two_coordinates_show_it(void **state) {
 
     // a guess may come as near to one of the slips: only two coordinates, or a number that is no
     // angle in radians, make it certain
-    static const char likely[] = "this looks like a known mistake; the note on it: ";
+    static const char likely[] = "probably this mistake: ";
     assert_int_equal(strncmp(v->entry[0].explanation, likely, strlen(likely)), 0);
     snprintf(answer, sizeof answer, "[%.6f, %.6f]", a2, th3 * 180 / PI);
     assert_null(strstr(grade(PREDICTED, "a", answer, "a.th3", v)->explanation, likely));

@@ -160,9 +160,9 @@ static void a_mistake_that_chance_explains_is_called_likely(void **state) {
 
     // a number in its place cannot be changed
     assert_string_equal(explain(e, "b", with_number(e, "l", "\"%.2f*sin(th1)*w1\"")),
-                        "this looks like a known mistake; the note on it: the sign is wrong");
+                        "probably this mistake: the sign is wrong");
     assert_string_equal(explain(e, "a", with_number(e, "l+w", "%.4f")),
-                        "this looks like a known mistake; the note on it: a product");
+                        "probably this mistake: a product");
 
     // two numbers that show the same mistake are more than chance
     char both[64];
@@ -189,7 +189,7 @@ static void two_mistakes_that_explain_a_number_are_both_named(void **state) {
     assert_string_equal(v.mistake, "twice");
     assert_string_equal(
         v.explanation,
-        "this looks like a known mistake; the note on it: not two rods; or: not a square");
+        "probably this mistake: not two rods; or: not a square");
     assert_near(v.points, 1, 1e-12);
     hn_exercise_free(e);
 }
