@@ -306,6 +306,15 @@ static hn_status say_end(hn_guest_process *p, hn_diag *diag) {
                       : hn_diag_set(diag, HN_ERR_IO, NULL, NULL, "it closed its output");
 }
 
+/// It may hang because of a limit that it has reached.
+static hn_status say_late(hn_guest_process *p, double seconds, hn_diag *diag) {
+    char last[320];
+    hn_crash_words(hn_guest_process_errors(p), p->file, p->confined, &p->limits, last);
+    const bool is_limit = strstr(last, " are allowed") != NULL;
+    return hn_diag_set(diag, HN_ERR_LIMIT, NULL, NULL, "it did not answer within %g s%s%s", seconds,
+                       is_limit ? "; it had written: " : "", is_limit ? last : "");
+}
+
 /// Moves the first line of what is pending to `line`; false: there is no whole one.
 static bool take_line(hn_guest_process *p, hn_strbuf *line) {
     const char *text = hn_strbuf_text(&p->pending);
@@ -375,8 +384,7 @@ hn_status hn_guest_process_ask(hn_guest_process *p, const char *text, size_t n, 
         // limits, at most twenty times a second
         const double now = hn_clock_wall();
         if (now - start > seconds) {
-            return hn_diag_set(diag, HN_ERR_LIMIT, NULL, NULL, "it did not answer within %g s",
-                               seconds);
+            return say_late(p, seconds, diag);
         }
         if (now - looked > 1e-3 * LOOK) {
             HN_TRY(check_use(p, diag));

@@ -430,6 +430,7 @@ CONFINED = {
     "forks away": ("greet('step')\nif os.fork() == 0:\n    os.setsid()\n    if os.fork() == 0:\n        time.sleep(60)\nos._exit(0)", "instead of an answer"),
     "fills its disk": ("greet('step')\nfor k in range(99):\n    open('/tmp/%d' % k, 'wb').write(b'x' * (1 << 24))", "No space left"),
     "writes a large file": ("greet('step')\nimport signal\nsignal.signal(signal.SIGXFSZ, signal.SIG_DFL)\nopen('/tmp/a', 'wb').write(b'x' * (1 << 25))", "file of more than 16 MB"),
+    "hangs for want of threads": ("import threading\ngreet('step')\nwhile True: threading.Thread(target=time.sleep, args=(99,)).start()", "did not answer within 0.5 s; it had written: RuntimeError: can't start new thread (mine.py, line "),
     "calls home": ("import socket\ngreet('step')\nsocket.create_connection(('127.0.0.1', 22), timeout=3)", "refused"),
     "writes into the system": ("open('/usr/mine', 'w')", "Read-only file system"),
     "writes beside itself": ("open('/program/other', 'w')", "Read-only file system"),

@@ -9,7 +9,8 @@
 #include <stdlib.h>
 
 static void fail(const holonom_fault *fault) {
-    fprintf(stderr, "%s: %s (%s)\n", fault->where, fault->message, fault->hint);
+    fprintf(stderr, "%s%s%s (%s)\n", fault->where, fault->where[0] ? ": " : "", fault->message,
+            fault->hint);
     exit(1);
 }
 

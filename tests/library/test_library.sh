@@ -62,6 +62,9 @@ expect 'the loop of index-1 opens, Baumgarte keeps it within a millimetre, proje
     "$(awk -v a="$(gap index1)" -v b="$(gap baumgarte)" -v c="$(gap projection)" \
         'BEGIN { if (a > 5e-3 && b < 1e-3 && b > 1e-9 && c < 1e-12 && c != "") print "yes" }')"
 
+expect 'a fault that is in no place of an input begins with its message' 'no folder' \
+    "$(cd / && HOLONOM_HOME=/nowhere "$work/example" 2>&1 >/dev/null | head -n 1 | cut -c 1-9)"
+
 sed 's/"four-bar"/"four-baar"/' "$work/example.c" >"$work/wrong.c"
 # shellcheck disable=SC2046
 gcc "$work/wrong.c" $(pkg-config --cflags --libs holonom) -o "$work/wrong"
