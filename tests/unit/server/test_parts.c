@@ -187,9 +187,7 @@ static void two_mistakes_that_explain_a_number_are_both_named(void **state) {
 
     // l + l is 2 l in every variant: that is one mistake, and the first of its names is taken
     assert_string_equal(v.mistake, "twice");
-    assert_string_equal(
-        v.explanation,
-        "probably this mistake: not two rods; or: not a square");
+    assert_string_equal(v.explanation, "probably this mistake: not two rods; or: not a square");
     assert_near(v.points, 1, 1e-12);
     hn_exercise_free(e);
 }
