@@ -118,6 +118,16 @@ class Starts(unittest.TestCase):
         return self.run_scene(method, links={"a": 1, "b": 1}, joints=[self.pin("t1", "ground", 0, "a"), self.pin("t2", "ground", 2, "b")],
                               constraints=constraints, start={"positions": {"t1": -1, "t2": {"guess": -1}}, "rates": {}})
 
+    def test_a_method_of_independent_coordinates_names_a_singular_start_and_what_passes_it(self):
+        for method in ("nullspace", "partitioning", "reduced", "nullspace-tangent"):
+            flat = run("parallelogram", f"{method}@rk4:h=1e-3", "--set", "th_0=0", "--time", "0.1")
+            with self.subTest(method=method):
+                self.assertEqual(flat["t"], [0])
+                self.assertIn("the start is a singular configuration", flat["reason"])
+                self.assertNotIn("dead point", flat["reason"])
+                tried = [text for i in flat["incidents"] if i["code"] == "chart-lost" for text in map(str, i["remedies"])]
+                self.assertTrue(any("projection@rk4" in text for text in tried), tried)
+
     def test_a_start_at_a_change_point_is_not_called_unique(self):
         flat = self.parallelogram("projection@rk4:h=1e-3", 0, 0)
         said = [i["message"] for i in flat["incidents"] if i["code"] == "rank-loss"]
@@ -126,6 +136,12 @@ class Starts(unittest.TestCase):
         moving = self.parallelogram("projection@rk4:h=1e-3", 0, 2)
         self.assertEqual(moving["status"], "inconsistent")
         self.assertIn("the start is a singular configuration", moving["reason"])
+
+        # so near that the rows are dependent within rounding
+        for angle in (1e-12, 1e-9, 1e-7):
+            near = self.parallelogram("projection@rk4:h=1e-3", angle, 0)
+            said = [i["message"] for i in near["incidents"] if i["code"] == "rank-loss"]
+            self.assertTrue(said and "the start is a singular configuration" in said[0], (angle, said))
 
         # a crank on top of its connecting rod: the row that is lost there is rounding, not 0
         joints = [self.pin("t1", "ground", 0, "a"), self.pin("t2", "a", 1, "b"), self.pin("c", "b", 1, "s", cut=True),

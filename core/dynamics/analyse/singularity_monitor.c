@@ -434,8 +434,10 @@ static void kernel_column(hn_singularity *r, int k, double *v) {
 /// A way from a pose [rad, or of the length], and the pivot there of rows that are lost at the pose
 /// itself: of the order of the way, and of its square where the rows always depend on each other.
 static const double BESIDE = 1e-4, PARTS = 1e-6;
-/// Share of the longest row's length below which a row is rounding.
-static const double NOTHING = 1e-12;
+/// Pivots that are lost at a configuration [of the largest], and rows that are nothing there [of
+/// the longest]: accelerations lose them where their squares are rounding, and beside the
+/// configuration they are about BESIDE.
+static const double LOST_HERE = 1e-6;
 
 /// Moves r->beside from q a little along all velocities that J allows at q, none favoured or
 /// missed. Returns false where there are none.
@@ -458,8 +460,7 @@ static bool move_beside(hn_singularity *r, const double *q) {
     return true;
 }
 
-/// As fill_qr(); a row that was nothing so far has no scale of its own, and takes that of the
-/// longest.
+/// As fill_qr(); a row that is nothing here has no scale of its own, and takes that of the longest.
 static void fill_by_longest(hn_singularity *r) {
     double shortest = 1;
     for (int i = 0; i < r->nc; i++) {
@@ -467,7 +468,7 @@ static void fill_by_longest(hn_singularity *r) {
     }
     memcpy(r->y, r->r, (size_t)r->nc * sizeof *r->r);
     for (int i = 0; i < r->nc; i++) {
-        r->r[i] = r->r[i] > 0 && r->r[i] * NOTHING < shortest ? r->r[i] : shortest;
+        r->r[i] = r->r[i] > 0 && r->r[i] * LOST_HERE < shortest ? r->r[i] : shortest;
     }
     fill_qr(r);
     memcpy(r->r, r->y, (size_t)r->nc * sizeof *r->r);
@@ -480,7 +481,7 @@ bool hn_singularity_is_local(hn_singularity *r, double t, const double *q) {
     hn_eval_run(r->rows, t, q, r->no_speed);
     scale(r);
     fill_by_longest(r);
-    hn_qr_factor(&r->qr, r->nv, r->nc, RANK_TOL);
+    hn_qr_factor(&r->qr, r->nv, r->nc, LOST_HERE);
     const int rank = r->qr.rank;
     if (rank >= r->nc || !move_beside(r, q)) {
         return false;

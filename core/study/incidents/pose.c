@@ -54,6 +54,20 @@ void hn_pose_describe(hn_watch *w, hn_incident *i, double t, const double *q, do
     w->singular.passing = 1 + (int)(i - w->log.list);
 }
 
+bool hn_pose_blames_start(const hn_watch *w, char why[256]) {
+    if (!w->singular.at_start || w->run->steps > 0) {
+        return false;
+    }
+    const int nc = w->run->info.nc;
+    snprintf(
+        why, 256,
+        "the start is a singular configuration: %d of %d constraint equations depend on the "
+        "others there, and no choice of coordinates is independent; start beside it, or take a "
+        "method that keeps all coordinates",
+        nc - w->start_rank, nc);
+    return true;
+}
+
 void hn_pose_explain(const hn_watch *w, char why[256]) {
     const hn_singular_record *s = &w->singular;
     const hn_state_at *now = &w->run->now;

@@ -8,7 +8,9 @@
 /// Reports redundant constraints at the start. They do no harm, so the report offers no remedy.
 static void report_redundant(hn_watch *w) {
     const int nc = w->run->info.nc, rank = w->accel_info.rank;
-    if (hn_singularity_is_local(w->singular.monitor, w->run->now.t, w->run->now.q)) {
+    w->singular.at_start =
+        hn_singularity_is_local(w->singular.monitor, w->run->now.t, w->run->now.q);
+    if (w->singular.at_start) {
         hn_incident_report(w, &hn_incident_rank_loss, "rank of J", rank, nc,
                            "the start is a singular configuration: %d of %d constraint equations "
                            "depend on the others there, and are independent in configurations "

@@ -24,7 +24,9 @@ enum {
 
 /// Says whether the present state is close to a singular configuration.
 static bool is_near_singular(const hn_watch *w) {
-    return w->run->info.nc > 0 && w->singular.info.sigma_min < CLOSE * w->singular.largest;
+    const bool starts = w->singular.at_start && w->run->steps == 0;
+    return starts ||
+           (w->run->info.nc > 0 && w->singular.info.sigma_min < CLOSE * w->singular.largest);
 }
 
 static const hn_formulation *formulation_of(const hn_watch *w) {

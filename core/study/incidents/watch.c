@@ -262,6 +262,7 @@ static void forget(hn_watch *w) {
     s->fallbacks = 0;
     s->passing = 0;
     s->announced = 0;
+    s->at_start = false;
 
     // rows, limits and the worst figures
     memset(w->row_size, 0, (size_t)w->run->info.nc * sizeof *w->row_size);

@@ -90,8 +90,9 @@ typedef struct hn_singular_record {
     /// since.
     int announced;
     double lowest;
-    double due;  ///< time of the latest prediction [s]
-    int passing; ///< 1 + number of the report on the configuration being passed, 0: none
+    double due;    ///< time of the latest prediction [s]
+    int passing;   ///< 1 + number of the report on the configuration being passed, 0: none
+    bool at_start; ///< the run starts in a singular configuration
     // a state inside the last step
     double *inside_q;       ///< nq
     double *inside, *whole; ///< nv: from the start of the step to that state, and to its end

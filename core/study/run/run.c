@@ -119,6 +119,9 @@ static hn_status fail(hn_run *run, hn_status status) {
     } else if (!run->reason[0]) {
         snprintf(run->reason, sizeof run->reason, "%s", why ? why : hn_status_text(status));
     }
+    if (status == HN_ERR_CHART || status == HN_ERR_UNSUPPORTED) {
+        hn_pose_blames_start(&run->watch, run->reason);
+    }
     if (status == HN_ERR_NO_CONVERGENCE || status == HN_ERR_INCONSISTENT) {
         hn_pose_explain(&run->watch, run->reason);
         hn_energy_explain(&run->watch, run->reason);
