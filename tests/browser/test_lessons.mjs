@@ -12,6 +12,7 @@ import {
   summaryOf,
 } from "../../web/state/answers.js";
 import { exhibitOf } from "../../web/state/exhibit.js";
+import { typeset } from "../../web/state/typeset.js";
 import { violations } from "./axe.mjs";
 import { createBench, read, screenBox, screenshot, soon, until } from "./support.mjs";
 
@@ -105,6 +106,26 @@ test("lines that were full flow into paragraphs; formulas, short lines and parag
   );
   assert.equal(flowing("a list:\n- one\n- two"), "a list:\n- one\n- two");
   assert.equal(flowing(`${full}\n${full}\nends`), `${full} ${full} ends`);
+});
+
+test("names of an exercise have their letters and indices, and what is typed stays as it is", () => {
+  const marks = { "": (text) => text, sub: (text) => `_{${text}}`, sup: (text) => `^{${text}}` };
+  const cases = [
+    ["l1 cos th1 - l2 cos th_2 = 0", "l_{1} cos θ_{1} − l_{2} cos θ_{2} = 0"],
+    ["phi_t + sqrt(x^2 + y^2), M_r(q)", "φ_{t} + sqrt(x^{2} + y^{2}), M_{r}(q)"],
+    ["J qdot = 0 and Phidot of Phi", "J q̇ = 0 and Φ̇ of Φ"],
+    ["delta v of a delta robot", "δ v of a delta robot"],
+    ['write "th1" or "J\' * lambda"', 'write "th1" or "J\' * lambda"'],
+    [
+      "then the theta\n  holonom run four-bar --set l1=2",
+      "then the θ\n  holonom run four-bar --set l1=2",
+    ],
+    ["at -0.5 m/s^2, 2e-5, lambda_mark", "at -0.5 m/s^{2}, 2e-5, lambda_mark"],
+  ];
+  for (const [typed, wanted] of cases) {
+    const seen = typeset(typed).map(({ text, place }) => marks[place](text));
+    assert.equal(seen.join(""), wanted);
+  }
 });
 
 test("what is asked is read from the exercise, what is typed is a value or a formula", () => {

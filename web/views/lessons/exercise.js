@@ -13,6 +13,7 @@ import {
   summaryOf,
 } from "../../state/answers.js";
 import { counted } from "../../state/format.js";
+import { typeset } from "../../state/typeset.js";
 import { h, say } from "../../widgets/dom.js";
 
 /**
@@ -20,11 +21,17 @@ import { h, say } from "../../widgets/dom.js";
  * @typedef {{node: Node, value: () => any}} Field value: undefined where nothing was entered
  */
 
+/** Text with its indices and powers. @param {string} words @returns {(Node | string)[]} */
+const set = (words) => typeset(words).map(({ text, place }) => (place ? h(place, {}, text) : text));
+
 /** @param {string} id @param {string} legend @param {{letter: string, text: string}[]} options */
 function radios(id, legend, options) {
   const inputs = options.map(({ letter, text }) => {
     const input = h("input", { type: "radio", name: id, id: `${id}-${letter}`, value: letter });
-    return { input, row: h("li", {}, input, h("label", { for: input.id }, `(${letter}) ${text}`)) };
+    return {
+      input,
+      row: h("li", {}, input, h("label", { for: input.id }, `(${letter}) `, ...set(text))),
+    };
   });
   return {
     node: h(
@@ -158,7 +165,7 @@ export function createExercise({ id, title: known, about, progress, changed }) {
           name: part.id,
           field: (part.kind === "choice" ? choiceField : textField)(`${key}-${part.id}`, part),
           head: [
-            h("p", { class: "ask" }, `(${part.id}) ${part.ask}`),
+            h("p", { class: "ask" }, `(${part.id}) `, ...set(part.ask)),
             h("p", { class: "about" }, counted(part.points, "point")),
             plotOf(part),
           ],
@@ -178,7 +185,7 @@ export function createExercise({ id, title: known, about, progress, changed }) {
       const number = hints.childElementCount + 1;
       try {
         const { text } = await documents.hint(id, number);
-        hints.append(h("li", {}, text));
+        hints.append(h("li", {}, ...set(text)));
         more.hidden = number >= problem.hints;
         say(more, `another hint (${number} of ${problem.hints} shown)`);
       } catch (error) {
@@ -231,7 +238,7 @@ export function createExercise({ id, title: known, about, progress, changed }) {
     }
 
     body.replaceChildren(
-      h("pre", { class: "statement", tabindex: "0" }, flowing(problem.statement)),
+      h("pre", { class: "statement", tabindex: "0" }, ...set(flowing(problem.statement))),
       ...fields.flatMap(({ head, field }) => [...head, field.node]),
       problem.names ? h("p", { class: "about" }, `Names: ${problem.names.join(", ")}`) : "",
       h(
