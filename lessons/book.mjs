@@ -63,10 +63,11 @@ const points = (n) => `${n} point${n === 1 ? "" : "s"}`;
 /** The plot that is to be read, without its own style, which would be that of the whole book. */
 const plot = (part) => (part.figure?.svg ?? "").replace(/<style>.*?<\/style>/s, "");
 
-/** The question of a part, and the form of its answer with what can be chosen. */
+/** The question of a part, and the form of its answer with what can be chosen: the options and the reasons, each on one page. */
 function question(part) {
-  const form = plain(part.answer_form ?? "").replace(/\n/g, "<br>");
-  return `<li><b>${part.id}</b> ${plain(part.ask ?? "")} (${points(part.points)})<div class="form">${form}</div>${plot(part)}</li>`;
+  const form = plain(part.answer_form ?? "").split("\n  because");
+  const written = form.map((text, k) => `<div class="form">${k ? "because" : ""}${text.replace(/\n/g, "<br>")}</div>`).join("");
+  return `<li><div class="asked"><b>${part.id}</b> ${plain(part.ask ?? "")} (${points(part.points)})</div>${written}<div class="plot">${plot(part)}</div></li>`;
 }
 
 /** Paragraphs of a statement; lines that are indented keep their places. */
@@ -107,7 +108,22 @@ const block = {
 
 /** @param {{kind: string}[]} nodes */
 function all(nodes = []) {
-  return nodes.map((n) => (inline[n.kind] ?? block[n.kind])(n)).join("");
+  return joined(nodes.map((n) => [n, (inline[n.kind] ?? block[n.kind])(n)]));
+}
+
+/** Puts nodes together; a formula in a line keeps the mark that follows it: no line begins with a comma. */
+function joined(nodes) {
+  let text = "";
+  for (let k = 0; k < nodes.length; k++) {
+    const [node, own] = nodes[k];
+    const next = nodes[k + 1]?.[0].kind === "text" ? nodes[k + 1] : null;
+    const mark = node.kind === "math" && !node.display && next ? next[1].match(/^[.,;:!?)\]]+/)?.[0] : "";
+    text += mark ? `<span class="kept">${own}${mark}</span>` : own;
+    if (mark) {
+      next[1] = next[1].slice(mark.length);
+    }
+  }
+  return text;
 }
 
 /** The blocks of a lesson; pictures that follow each other, in a paragraph or not, stand together. */
@@ -159,7 +175,7 @@ pre { white-space: pre-wrap; background: #f5f5f2; padding: .5em .7em; margin: .5
  .exercise ul { list-style: none; padding-left: .5em; margin: .3em 0; }
 .form { font-size: 9pt; color: #444; padding-left: 1.2em; } .exercise svg { width: 70%; height: auto; }
 .exercise svg text { font: 13px "DejaVu Sans", sans-serif; } .exercise svg path { fill: none; stroke: #1a1a1a; } .exercise svg .grid { opacity: .25; } .exercise svg .curve { stroke-width: 2; }
-.exercise li { margin: .25em 0; break-inside: avoid; } .answers { font-size: 9.5pt; margin: .3em 0; } .answers p { display: inline; } .answers p + p { display: block; margin: .4em 0; }
+.exercise li { margin: .25em 0; } .asked { break-inside: avoid; break-after: avoid; } .form { break-inside: avoid; } .plot { break-inside: avoid; break-before: avoid; } .kept { white-space: nowrap; } .answers { font-size: 9.5pt; margin: .3em 0; } .answers p { display: inline; } .answers p + p { display: block; margin: .4em 0; }
 p:has(+ .pictures), p:has(+ p > .katex-display) { break-after: avoid; } h3 + ul { break-inside: avoid; }
 .gallery { display: grid; grid-template-columns: 1fr 1fr 1fr 1fr; gap: 0 .8em; } .gallery figure { margin: .4em 0; }
 .gallery figure img { width: 100%; max-width: none; aspect-ratio: 1.1; object-fit: cover; object-position: left; }

@@ -81,9 +81,12 @@ PROBLEM = [
 ]
 
 
-def typed(x, y, command, most=52):
+MOST = 52  # characters in a line of a box
+
+
+def typed(x, y, command):
     """A command in one line or two, marked so that a test can run it."""
-    at = len(command) if len(command) <= most else command.rfind(" ", 0, most)
+    at = len(command) if len(command) <= MOST else command.rfind(" ", 0, MOST)
     rest = command[at:].strip()
     more = f'<tspan x="{x:.1f}" dy="16"> {escape(rest)}</tspan>' if rest else ""
     style = 'class="command" font-family="DejaVu Sans Mono, monospace"'
@@ -92,13 +95,15 @@ def typed(x, y, command, most=52):
 
 def flow(lesson, name, title, boxes, back=None):
     """Boxes below each other with arrows; `back` (from, to, word) is an arrow on the right that returns."""
-    width, tall, gap, left, wide = 544 if back else 474, 66, 20, 14, 446
+    two_lines = any(len("holonom " + command) > MOST for _, command in boxes)
+    width, tall, gap, left, wide = 544 if back else 474, 66 if two_lines else 56, 20, 14, 446
     parts = []
     for k, (words, command) in enumerate(boxes):
         y = 20 + k * (tall + gap)
+        lower = 8 if two_lines and len("holonom " + command) <= MOST else 0  # a box of one line in the middle
         parts.append(f'<rect x="{left}" y="{y}" width="{wide}" height="{tall}" rx="5" fill="#ffffff" stroke="{INK}" stroke-width="1.3"/>')
-        parts.append(text(left + wide / 2, y + 23, f"{k + 1}. {words}", 15))
-        parts.append(typed(left + wide / 2, y + 42, "holonom " + command))
+        parts.append(text(left + wide / 2, y + 23 + lower, f"{k + 1}. {words}", 15))
+        parts.append(typed(left + wide / 2, y + 42 + lower, "holonom " + command))
         if k:
             parts.append(line(left + wide / 2, y - gap, left + wide / 2, y - 2, extra='marker-end="url(#head0)"'))
     if back:

@@ -214,7 +214,9 @@ static void ask(hn_strbuf *b, const hn_part *p) {
     }
     hn_strbuf_add(b, "a list of stages in quotes: [\"...\", ...]; the order is executed");
     for (int i = 0; i < N_STAGES; i++) {
-        hn_strbuf_printf(b, "\n    %-16s %s", STAGES[order[i]].name, STAGES[order[i]].about);
+        char name[24];
+        snprintf(name, sizeof name, "%s:", STAGES[order[i]].name);
+        hn_strbuf_printf(b, "\n    %-17s %s", name, STAGES[order[i]].about);
     }
 }
 
