@@ -115,6 +115,11 @@ class StartingPoints(unittest.TestCase):
             flat = re.sub(r"\s+", " ", text)
             for words in ('"provides": "step"', "asked t, h, q, v", "q, v at t + h", "@own:h=", "server/program/README.md", "serve --programs DIR"):
                 self.assertIn(words, flat, name)
+            # what a student would find out by a failure
+            if name != "help":
+                self.assertIn("holds this one file", flat, name)
+        # narrow enough for an editor, but for the command
+        self.assertLessEqual(max(len(line) for line in texts["python"].splitlines() if "--methods" not in line), 100)
 
     def test_it_does_not_write_over_the_work_of_a_student(self):
         with tempfile.TemporaryDirectory() as folder:
