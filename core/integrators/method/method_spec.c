@@ -52,10 +52,22 @@ static size_t find_char(piece p, char c) {
     return hit ? (size_t)(hit - p.text) : p.to;
 }
 
+/// Writes the spelling of a program where a word looks like a file, which no formulation does.
+static bool suggest_program(const char *word, char hint[HN_DIAG_HINT]) {
+    const bool is_file = strpbrk(word, "/.") != NULL && strncmp(word, "program:", 8) != 0;
+    if (is_file) {
+        snprintf(hint, HN_DIAG_HINT, "a program of your own is spelled program:%.100s@rk4:h=1e-3",
+                 word);
+    }
+    return is_file;
+}
+
 static hn_status unknown_name(hn_diag *diag, piece p, const char *what, const char *word,
                               const char *const *names, int n) {
     char hint[HN_DIAG_HINT];
-    hn_suggest(hint, word, names, n, NULL);
+    if (strcmp(what, "formulation") != 0 || !suggest_program(word, hint)) {
+        hn_suggest(hint, word, names, n, NULL);
+    }
     char list[HN_DIAG_MESSAGE - 128] = ""; // the rest of the message is shorter
     size_t used = 0;
     for (int i = 0; i < n; i++) {
@@ -104,9 +116,11 @@ static hn_status no_integrator(hn_diag *diag, piece all) {
     copy_word((piece){all.text, 0, find_char(all, ':')}, word);
     const char *meant = hn_formulation_find(word) ? word : hn_nearest_name(word, names, n);
 
-    snprintf(hint, sizeof hint,
-             "write for example %.*s@rk4:h=1e-3; 'holonom list methods' names them all", SHOWN,
-             meant ? meant : "projection");
+    if (!suggest_program(word, hint)) {
+        snprintf(hint, sizeof hint,
+                 "write for example %.*s@rk4:h=1e-3; 'holonom list methods' names them all", SHOWN,
+                 meant ? meant : "projection");
+    }
     hn_diag_set(diag, HN_ERR_INPUT, NULL, hint,
                 "'%.60s' names no method: a formulation, '@' and an integrator are needed",
                 all.text);

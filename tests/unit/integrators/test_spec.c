@@ -185,6 +185,18 @@ static void an_option_on_the_wrong_side_names_the_side_that_has_it(void **state)
     assert_string_equal(d.message, "option 'omega' is not known; there are: h, sum");
 }
 
+static void a_file_is_answered_with_the_spelling_of_a_program(void **state) {
+    (void)state;
+    hn_method_spec s;
+    hn_diag d;
+    assert_int_equal(parse("./mine.py@rk4:h=0.01", &s, &d), HN_ERR_INPUT);
+    assert_string_equal(d.hint, "a program of your own is spelled program:./mine.py@rk4:h=1e-3");
+    assert_int_equal(parse("mine.py", &s, &d), HN_ERR_INPUT);
+    assert_string_equal(d.hint, "a program of your own is spelled program:mine.py@rk4:h=1e-3");
+    assert_int_equal(parse("baumgarte@rk4:h.x=3", &s, &d), HN_ERR_INPUT);
+    assert_null(strstr(d.hint, "program:"));
+}
+
 static int n_words(const char *text) {
     int n = 0;
     for (; *text; n++) {
@@ -310,6 +322,7 @@ int main(void) {
         cmocka_unit_test(a_pair_is_read_exactly_when_the_integrator_serves_the_formulation),
         cmocka_unit_test(a_refused_pair_names_what_fits_on_either_side),
         cmocka_unit_test(an_option_on_the_wrong_side_names_the_side_that_has_it),
+        cmocka_unit_test(a_file_is_answered_with_the_spelling_of_a_program),
         cmocka_unit_test(cards_keep_to_their_space_and_choices_to_their_range),
         cmocka_unit_test(json_names_choices_and_never_holds_infinity),
         cmocka_unit_test(random_text_is_refused_or_reads_back),
