@@ -533,6 +533,16 @@ class Bounded(unittest.TestCase):
         self.assertEqual(server.stop(), 0, "".join(server.errors))
         self.assertIn("the server ends while 2 of its studies run; their results are lost", "".join(server.errors))
 
+    def test_a_study_whose_journal_cannot_be_written_is_not_said_to_be_kept(self):
+        """The limit on the size of files stands for a full disk; the server said that what the study had done was kept."""
+        with tempfile.TemporaryDirectory() as folder:
+            server = driver.Server("--runs", folder, program=["sh", "-c", 'trap "" XFSZ; ulimit -f 0; exec "$0" "$@"', driver.PROGRAM])
+            study = start(server, LONG)
+            self.assertTrue(driver.until(lambda: look(server, study)["progress"] > 0.3, 60))  # a point is done
+            self.assertEqual(server.stop(), 0, "".join(server.errors))
+            self.assertIn("could be written to the folder of --runs", "".join(server.errors))
+            self.assertNotIn("is kept", "".join(server.errors))
+
     def test_a_study_goes_on_in_the_next_server_with_the_same_folder(self):
         body = {"scene": "four-bar", "kind": "work-precision", "time": 5, "samples": 0, "levels": 6,
                 "methods": ["projection@rk4", "index1@rk4", "ggl@radau5"]}

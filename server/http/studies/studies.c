@@ -5,6 +5,7 @@
 #include "http/request/context.h"
 #include "http/request/gzip.h"
 #include "http/request/request.h"
+#include "http/studies/study_cut.h"
 #include "http/studies/study_fields.h"
 #include "http/studies/study_places.h"
 
@@ -66,6 +67,10 @@ static void *work(void *arg) {
     reset_result(&s->result);
     s->result = result;
     s->done = 1;
+    if (s->is_cut && result.state == HN_STUDY_STOPPED) {
+        all->n_cut++;
+        all->n_cut_kept += s->work.is_kept;
+    }
     s->ended = s->touched = hn_clock_wall();
     hn_shares_give(all->places, s->client); // whoever sees the end finds the place free
     pthread_mutex_unlock(&all->lock);
@@ -208,23 +213,13 @@ static void free_all(hn_study **dead, int n) {
 }
 
 void hn_studies_tell_end(hn_studies *all) {
-    int n_running = 0;
     pthread_mutex_lock(&all->lock);
     all->stopping = 1;
     for (int i = 0; i < all->n; i++) {
         atomic_store(&all->list[i]->work.stop, 1);
-        n_running += !all->list[i]->done;
+        all->list[i]->is_cut = !all->list[i]->done;
     }
     pthread_mutex_unlock(&all->lock);
-    if (n_running > 0) {
-        fprintf(stderr, "holonom: the server ends while %d of its studies %s; %s\n", n_running,
-                n_running == 1 ? "runs" : "run",
-                all->opts->runs_folder
-                    ? "what they have done is kept: the same request to a server "
-                      "with the same --runs continues from there"
-                    : "their results are lost; 'serve --runs DIR' keeps what "
-                      "studies have done");
-    }
 }
 
 void hn_studies_stop(hn_studies *all) {
@@ -243,6 +238,7 @@ void hn_studies_stop(hn_studies *all) {
     while (all->n_threads > 0) {
         pthread_cond_wait(&all->changed, &all->lock);
     }
+    hn_study_report_cut(all);
     pthread_mutex_unlock(&all->lock);
     free_all(dead, n_dead);
     if (all->has_keeper) {

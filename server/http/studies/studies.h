@@ -15,9 +15,10 @@ struct hn_request;
 
 /// `opts` and `lib` must outlive it. NULL when memory is out.
 hn_studies *hn_studies_create(const hn_http_opts *opts, const hn_library *lib);
-/// Asks every study to stop, waits for nothing, and reports on standard error how many ran.
+/// Asks every study to stop, and waits for nothing.
 void hn_studies_tell_end(hn_studies *all);
-/// Asks every study to stop and waits for their threads. NULL is legal.
+/// Asks every study to stop and waits for their threads. Reports on standard error how many were
+/// told to stop as they ran, and whether what they did is kept. NULL is legal.
 void hn_studies_stop(hn_studies *all);
 void hn_studies_free(hn_studies *all); ///< stops first; NULL is legal
 

@@ -18,6 +18,7 @@ typedef struct hn_study {
     double ended, touched;
     double before; ///< wall time of earlier runs [s]
     int done;
+    bool is_cut; ///< it ran when the server began to end
     hn_study_result result;
     hn_client client; ///< who holds its place while it runs, and who started it last
     hn_study_work work;
@@ -36,6 +37,7 @@ struct hn_studies {
     pthread_t keeper;     ///< looks after them
     bool has_keeper;
     int n_threads; ///< that are at work, or on their way out
+    int n_cut, n_cut_kept; ///< the end of the server stopped them; what they did is in the folder
 };
 
 /// Returns the seconds to go, by what was done in `elapsed` seconds and never beyond the time

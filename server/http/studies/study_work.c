@@ -234,6 +234,7 @@ void hn_study_work_run(hn_study_work *w, double cpu_seconds, hn_study_result *ou
     w->cpu_spent += hn_clock_thread() - cpu;
     w->wall_spent += hn_clock_wall() - wall;
     w->out_of_time |= end.out_of_time;
+    w->is_kept = w->request.limits.folder && !end.lost;
     if (status != HN_OK) {
         report_failure(w, status, &diags, out);
         return;

@@ -34,6 +34,7 @@ typedef struct hn_study_work {
     bool computes;    ///< between the begin and the end of hn_study_work_run()
     double wall_end;  ///< of the computing, by the study's own time limit [s, wall clock]
     bool out_of_time; ///< equations were ended at wall_end
+    bool is_kept;     ///< what its last run has done is in the folder
     int cpu_used_up;
     double cpu_spent, wall_spent; ///< by all runs that have ended [s]
     _Atomic double share;         ///< of the whole study that is done
