@@ -36,7 +36,7 @@ struct hn_studies {
     hn_place_queue queue; ///< requests that wait for a place
     pthread_t keeper;     ///< looks after them
     bool has_keeper;
-    int n_threads; ///< that are at work, or on their way out
+    int n_threads;         ///< that are at work, or on their way out
     int n_cut, n_cut_kept; ///< the end of the server stopped them; what they did is in the folder
 };
 
