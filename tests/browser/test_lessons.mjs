@@ -403,6 +403,14 @@ test("every lesson of the server is shown, with no formula in error", async (t) 
       assert.equal(await page.locator(".lesson-text .katex-error").count(), 0, id),
     );
     assert.doesNotMatch(await page.textContent(".lesson-text"), /undefined|\[object/, id);
+    const loose = await page.locator(".lesson-text .math:not(.display)").evaluateAll(
+      (list) =>
+        list.filter(({ nextSibling: next, parentNode, textContent }) => {
+          const mark = /^[.,;:!?)\]]/.test(next?.nodeType === Node.TEXT_NODE ? next.data : "");
+          return mark && !parentNode.classList.contains("kept") && textContent.length < 40;
+        }).length,
+    );
+    assert.equal(loose, 0, `${id}: a mark may begin a line behind its formula`);
     const regions = await page
       .locator(".lesson-text section[aria-label]")
       .evaluateAll((list) => list.map((one) => one.ariaLabel));
@@ -508,4 +516,18 @@ test("a lesson is put on paper with every picture, seen or not", async (t) => {
   await page.getByRole("button", { name: "print", exact: true }).click();
   await page.waitForFunction(() => globalThis.printed);
   assert.deepEqual(await page.evaluate(() => globalThis.printed), [0, 0]);
+
+  // on paper a prediction has its choices, pictures keep their captions, and no frame is in focus
+  await page.emulateMedia({ media: "print" });
+  await soon(async () =>
+    assert.equal(await page.locator(".predictions button").first().isVisible(), true),
+  );
+  assert.deepEqual(
+    await page.evaluate(() => {
+      const style = (name) => getComputedStyle(document.querySelector(name));
+      document.querySelector(".lesson-text").focus();
+      return [style(".lesson-text").outlineStyle, style(".lesson-text figure").breakInside];
+    }),
+    ["none", "avoid"],
+  );
 });

@@ -115,16 +115,31 @@ const MAKERS = {
 export const wordsOf = (blocks) =>
   blocks.map(({ text, tex, children }) => text ?? tex ?? wordsOf(children ?? [])).join("");
 
+/** The mark with which a text begins: it stays with the formula before it. */
+const MARK = /^[.,;:!?)\]]+/;
+/** Characters of TeX up to which a formula and its mark surely have room on one line. */
+const SHORT = 40;
+
+/** The mark that stays with the formula `block`, "" for none. @param {Block} block @param {Block} [next] */
+const markBehind = (block, next) =>
+  block.kind === "math" && !block.display && block.tex.length <= SHORT && next?.kind === "text"
+    ? (MARK.exec(next.text)?.[0] ?? "")
+    : "";
+
 /**
  * @param {Block[] | undefined} blocks
  * @param {Kit} kit
  * @returns {Node[]}
  */
 export function make(blocks, kit) {
-  return (blocks ?? []).map((block) => {
-    const maker = kit.live[block.kind] ?? MAKERS[block.kind];
-    return maker
-      ? maker(block, kit)
-      : h(LINES.has(block.kind) ? "span" : "div", {}, ...make(block.children, kit));
+  let taken = "";
+  return (blocks ?? []).map((block, k, list) => {
+    const own = taken ? { ...block, text: block.text.slice(taken.length) } : block;
+    const maker = kit.live[own.kind] ?? MAKERS[own.kind];
+    const node = maker
+      ? maker(own, kit)
+      : h(LINES.has(own.kind) ? "span" : "div", {}, ...make(own.children, kit));
+    taken = markBehind(own, list[k + 1]);
+    return taken ? h("span", { class: "kept" }, node, taken) : node;
   });
 }
