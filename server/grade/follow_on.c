@@ -125,8 +125,11 @@ bool hn_follow_on_find(const hn_variant *x, int i, const cJSON *submission, cons
     }
     hn_strbuf_init(&f.text);
     bool found = fill_in(x, i, value, &f) && (f.used & find_wrong(x, i, v)) != 0;
-    found = found && is_right_by(&x->part[i], hn_strbuf_text(&f.text),
-                                 cJSON_GetObjectItemCaseSensitive(submission, x->part[i].id));
+
+    // 0 from 0 shows nothing
+    const cJSON *given = cJSON_GetObjectItemCaseSensitive(submission, x->part[i].id);
+    found = found && fabs(read_number(&x->part[i], given)) > 0 &&
+            is_right_by(&x->part[i], hn_strbuf_text(&f.text), given);
     hn_strbuf_reset(&f.text);
     if (found) {
         name_parts(x, f.used & find_wrong(x, i, v), names, sizeof names);

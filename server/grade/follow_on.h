@@ -6,7 +6,8 @@
 //
 //     "answer": "T*c*1000/(2.785*m)", "follows": "T*1000/{c}"       {c}: the answer to part c
 //
-// It earns all points of the part, or the share that a rubric gives for "follow-on".
+// It earns all points of the part, or the share that a rubric gives for "follow-on". A 0 that
+// follows from a 0 earns nothing.
 
 #include "grade/variant.h"
 

@@ -122,6 +122,11 @@ def follow_ons(folder):
     entry = next(e for e in done["entries"] if e["name"] == "c")
     expect("two wrong answers are both named", entry["points"] == 2 and "your answers to parts a and b, which are wrong" in entry["explanation"], str(entry))
 
+    for name in ("power", "forces", "atwood", "cost"):
+        asked = [p["id"] for p in json.loads(run("problem", name, "--json").stdout)["parts"] if p["kind"] == "number"]
+        done = json.loads(run("grade", name, write(folder, "zero.json", dict.fromkeys(asked, 0)), "--json").stdout)
+        expect(f"{name}: zeros that follow from zeros earn nothing", done["score"] == 0, str(done["entries"]))
+
     # an exercise whose formula is wrong is found by its check
     part = {"ask": "?", "kind": "number", "points": 1}
     exercise = {"exercise": 2, "id": "mine", "title": "t", "lesson": "l", "section": "s", "statement": ["s"], "draw": {"l": {"range": [1, 9], "digits": 1}},
