@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Wrong answers that a lecturer expects to be named: each with its sentence. Speaks TAP."""
 
+import glob
 import json
 import math
 import os
+import re
 import sys
 
 sys.path.insert(0, os.path.dirname(__file__))
@@ -28,6 +30,13 @@ def formulas(folder):
     """Angles in degrees, terms of the other side, names that are left out."""
     named(folder, "trammel", "a", "-L*sin(th*pi/180)", "degrees", "taken of degrees")
     named(folder, "trammel", "a", "-L*sin(th*180/pi)", "degrees")
+    named(folder, "passive", "a", "-B*sin(q*pi/180)/2", "degrees")
+    for path in sorted(glob.glob(os.path.join(os.path.dirname(__file__), "../../lessons/*/problems/*.json"))):
+        with open(path, encoding="utf-8") as f:
+            parts = json.load(f).get("parts", [])
+        bare = [(p["id"], name) for p in parts for name, how in p.get("states", {}).items()
+                if not how.get("unit") and re.search(rf"(sin|cos|tan)\([^)]*\b{name}\b", json.dumps(p["answer"]))]  # fmt: skip
+        expect(f"{os.path.basename(path)}: an angle has its unit, so that degrees are named", not bare, str(bare))
     for sign, share in (("-", 2.01), ("+", 0.99)):
         answer = f"N'*M*Ndot*u + N'*h {sign} N'*S'*tau"
         named(folder, "p2", "c", answer, "applied", "right-hand side")
