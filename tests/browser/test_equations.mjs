@@ -4,42 +4,9 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { partsOf } from "../../web/state/belongs.js";
-import { PLAIN, TEX, foldAngles } from "../../web/state/fold.js";
-import { evaluate } from "../../web/state/formula.js";
 import { createBench, playTo, read, screenBox, screenshot, soon } from "./support.mjs";
 
 const { open } = createBench();
-
-test("products of sines and cosines are folded without changing the value", () => {
-  const values = new Map(Object.entries({ a: 0.7, b: -1.3, m: 2, l: 0.4, g: 9.81 }));
-  const cases = [
-    ["0.5*m*l*sin(a)*sin(b) + 0.5*m*l*cos(a)*cos(b)", "0.5*m*l*cos(a - b)"],
-    ["cos(a)*cos(b) - sin(a)*sin(b)", "cos(a + b)"],
-    ["m*sin(a)*cos(b) - m*cos(a)*sin(b)", "m*sin(a - b)"],
-    ["-m*cos(a)*sin(b) + l + m*sin(a)*cos(b)", ""],
-    ["-m*cos(a)*cos(b) - m*sin(a)*sin(b)", "-m*cos(a - b)"],
-    ["cos(a)*cos(b) + m*sin(a)*sin(b)", "cos(a)*cos(b) + m*sin(a)*sin(b)"],
-    ["m*(cos(a)*cos(b) + sin(a)*sin(b))", "m*(cos(a)*cos(b) + sin(a)*sin(b))"],
-    ["-m*l*cos(a)*sin(b) - l*cos(b)*(g - m*sin(a))", "m*l*sin(a - b) - l*cos(b)*g"],
-    ["l*cos(b)*(g - m*sin(a))", "l*cos(b)*(g - m*sin(a))"],
-  ];
-  for (const [text, wanted] of cases) {
-    const folded = foldAngles(text, PLAIN);
-    assert.ok(Math.abs(evaluate(folded, values) - evaluate(text, values)) < 1e-14, folded);
-    if (wanted) {
-      assert.equal(folded, wanted);
-    } else {
-      assert.ok(folded.length < text.length, folded);
-    }
-  }
-  assert.equal(
-    foldAngles("-\\left(\\sin a\\, \\cos b - \\cos a\\, \\sin b\\right) - g", TEX),
-    "-\\left(\\sin(a - b)\\right) - g",
-  );
-  const tex =
-    "\\tfrac{1}{2}\\, l_{1}\\, \\sin \\theta_{1}\\, \\sin \\theta_{c} + \\tfrac{1}{2}\\, l_{1}\\, \\cos \\theta_{1}\\, \\cos \\theta_{c}";
-  assert.equal(foldAngles(tex, TEX), "\\tfrac{1}{2}\\, l_{1}\\, \\cos(\\theta_{1} - \\theta_{c})");
-});
 
 test("an entry belongs to the bodies of its velocities and to its loop", () => {
   const scene = {
@@ -107,7 +74,7 @@ test("terms light up links and curves, links light up terms; numbers follow the 
     assert.ok(Math.abs(rest) < 2e-2, `M a - J'λ - f = ${rest} with four digits of each`);
   }
   await soon(async () =>
-    assert.match(await page.innerHTML(".terms"), /M_\{21\} = M_\{12\} = [^<]*\\cos\(/),
+    assert.match(await page.innerHTML(".terms"), /M_\{21\} = M_\{12\} = [^<]*\\cos\\left\(/),
   );
 
   const line = page.locator('.term-block .line[data-bodies="0"]').first();

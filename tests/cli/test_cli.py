@@ -63,6 +63,19 @@ class CommandLine(Command):
         moved = strict(self.assert_exit(call("terms", "pendulum", "--json", "--q", name + "=0.5", "--t", "2"), DONE))
         self.assertEqual((moved["q"][0], moved["t"]), (0.5, 2))
 
+    def test_equations_of_every_shipped_scene_are_told_with_angles_joined(self):
+        scenes = strict(self.assert_exit(call("list", "scenes", "--json"), DONE))
+        ids = [scene["id"] for scene in scenes.get("scenes", scenes) if not scene.get("errors")]
+        self.assertGreater(len(ids), 30)
+        for scene in ids:
+            with self.subTest(scene=scene):
+                self.assertIn("M[1][1] = ", self.assert_exit(call("equations", scene), DONE))
+        text = self.assert_exit(call("equations", "four-bar"), DONE)
+        self.assertIn("M[2][1] = 0.5*l1*l2*m2*cos(th1 - theta_coupler)\n", text)
+        self.assertIn("f[2] = 0.5*w1^2*l1*l2*m2*sin(th1 - theta_coupler) - 0.5*l2*m2*g*cos(theta_coupler)\n", text)
+        latex = self.assert_exit(call("equations", "four-bar", "--format", "latex"), DONE)
+        self.assertIn("\\cos\\left(\\theta_{1} - \\theta_{coupler}\\right)", latex)
+
     def test_equations_give_the_pose_from_the_independent_coordinates(self):
         text = self.assert_exit(call("equations", "slider-crank"), DONE)
         self.assertIn("independent: th1\n", text)

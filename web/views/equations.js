@@ -5,7 +5,6 @@
 import { sentenceOf } from "../api/client.js";
 import { plain } from "../state/format.js";
 import { partsOf } from "../state/belongs.js";
-import { TEX, foldAngles } from "../state/fold.js";
 import { evaluate, valuesAt } from "../state/formula.js";
 import { listen, shownIndex } from "../state/store.js";
 import { h, say } from "../widgets/dom.js";
@@ -176,8 +175,7 @@ export function createEquations(el, store, actions) {
     if (entry.latex.length <= LONGEST) {
       const mirrored = entry.column && entry.column !== entry.row && /^M/.test(entry.term);
       const twin = mirrored ? ` = ${entry.term}_{${entry.column}${entry.row}}` : "";
-      const right = foldAngles(entry.latex, TEX);
-      const whole = connect(formula(`${entry.name_latex}${twin} = ${right}`, false), entry);
+      const whole = connect(formula(`${entry.name_latex}${twin} = ${entry.latex}`, false), entry);
       if (entry.text) {
         const node = h("span", { class: "number value" });
         whole.append(node);

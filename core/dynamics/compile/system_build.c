@@ -2,6 +2,7 @@
 #include "dynamics/compile/system_build.h"
 
 #include "expr/construct.h"
+#include "expr/diff.h"
 
 #include <math.h>
 #include <stdbool.h>
@@ -133,6 +134,34 @@ static hn_status refuse_row(hn_system *sys, const hn_new_row *row, double offset
         "the loop can never close: '%s' is off by %.6g%s in every pose", row->name, offset, unit);
 }
 
+/// Returns whether a row is the same in every pose, and its value at the scene's parameters. Where
+/// these are symbols a row that is always closed may stand as terms that cancel, as c^2 + s^2 - 1.
+static bool is_constant(hn_system *sys, hn_ex phi, double *value) {
+    if (hn_is_number(phi, value)) {
+        return true;
+    }
+    const int n = hn_graph_n_symbols(sys->g);
+    double *x = hn_arena_doubles(sys->arena, (size_t)n);
+    bool *is_param = hn_arena_get(sys->arena, (size_t)n * sizeof *is_param);
+    if (!x || !is_param) {
+        return false;
+    }
+    for (int i = 0; i < sys->scene->n_params; i++) {
+        const int symbol = hn_ex_symbol(sys->g, sys->params[i]);
+        if (symbol >= 0) {
+            x[symbol] = sys->scene->params[i].value;
+            is_param[symbol] = true;
+        }
+    }
+    for (int k = 0; k < n; k++) {
+        if (!is_param[k] && hn_depends_on(sys->g, phi, k)) {
+            return false;
+        }
+    }
+    *value = hn_graph_eval(sys->g, phi, x);
+    return true;
+}
+
 hn_status hn_system_add_row(hn_system *sys, const hn_new_row *row) {
     sys->info.rows_before++;
 
@@ -143,12 +172,12 @@ hn_status hn_system_add_row(hn_system *sys, const hn_new_row *row) {
     }
     double value;
     if (!moves) {
-        if (!hn_is_number(row->phi, &value)) {
+        if (!is_constant(sys, row->phi, &value)) {
             return hn_diags_add(hn_system_faults(sys), HN_ERR_INPUT, row->pointer,
                                 "a constraint must contain a coordinate",
                                 "'%s' depends on no coordinate", row->name);
         }
-        if (fabs(value) > CLOSED * (row->is_length ? sys->length : 1)) {
+        if (!(fabs(value) <= CLOSED * (row->is_length ? sys->length : 1))) {
             return refuse_row(sys, row, value);
         }
         sys->dropped[sys->info.rows_dropped++] = row->name;

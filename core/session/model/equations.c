@@ -3,6 +3,7 @@
 
 #include "dynamics/compile/compile.h"
 #include "dynamics/compile/coordinates.h"
+#include "expr/angles.h"
 #include "expr/print.h"
 #include "session/model/model.h"
 #include "session/model/position_form.h"
@@ -39,6 +40,18 @@ static hn_status list_terms(const hn_system *sys, hn_arena *arena, term out[N_TE
         {"gamma", "\\gamma", "closure acceleration at a = 0", x.gamma, info.nc, 0, 0},
     };
     memcpy(out, list, sizeof list);
+
+    // as they read best: cos a cos b + sin a sin b is cos(a - b)
+    for (int k = 0; k < N_TERMS; k++) {
+        const size_t n = (size_t)out[k].rows * (size_t)(out[k].cols ? out[k].cols : 1);
+        hn_ex *joined = hn_arena_get(arena, n * sizeof *joined);
+        if (!joined) {
+            return HN_ERR_MEMORY;
+        }
+        memcpy(joined, out[k].e, n * sizeof *joined);
+        HN_TRY(hn_angles_join(hn_system_graph(sys), joined, (int)n));
+        out[k].e = joined;
+    }
     return HN_OK;
 }
 
