@@ -7,6 +7,7 @@
 import { execFileSync } from "node:child_process";
 import { existsSync, readFileSync, writeFileSync } from "node:fs";
 import { createRequire } from "node:module";
+import { typeset } from "../web/state/typeset.js";
 
 const [program, out] = process.argv.slice(2);
 const require = createRequire(new URL("../web/package.json", import.meta.url));
@@ -58,6 +59,10 @@ function predict(node) {
   return `<div class="box"><b>Predict first, ${answers.length}.</b> ${all(node.children)}<ol type="a">${choices}</ol></div>`;
 }
 
+/** The text of an exercise with its letters, indices and powers. */
+const set = (text) =>
+  typeset(text).map(({ text: words, place }) => (place ? `<${place}>${plain(words)}</${place}>` : plain(words))).join("");
+
 const points = (n) => `${n} point${n === 1 ? "" : "s"}`;
 
 /** The plot that is to be read, without its own style, which would be that of the whole book. */
@@ -65,9 +70,10 @@ const plot = (part) => (part.figure?.svg ?? "").replace(/<style>.*?<\/style>/s, 
 
 /** The question of a part, and the form of its answer with what can be chosen: the options and the reasons, each on one page. */
 function question(part) {
-  const form = plain(part.answer_form ?? "").split("\n  because");
+  const choices = (line) => (/^ +\(/.test(line) ? set(line) : plain(line)); // what is typed stays as it is typed
+  const form = (part.answer_form ?? "").split("\n").map(choices).join("\n").split("\n  because");
   const written = form.map((text, k) => `<div class="form">${k ? "because" : ""}${text.replace(/\n/g, "<br>")}</div>`).join("");
-  return `<li><div class="asked"><b>${part.id}</b> ${plain(part.ask ?? "")} (${points(part.points)})</div>${written}<div class="plot">${plot(part)}</div></li>`;
+  return `<li><div class="asked"><b>${part.id}</b> ${set(part.ask ?? "")} (${points(part.points)})</div>${written}<div class="plot">${plot(part)}</div></li>`;
 }
 
 /** Paragraphs of a statement; lines that are indented keep their places. */
@@ -75,7 +81,7 @@ function paragraphs(text) {
   const indented = (p) => p.split("\n").every((line) => line.startsWith("    "));
   return text
     .split(/\n\s*\n/)
-    .map((p) => (indented(p) ? `<pre>${plain(p.replace(/^ {4}/gm, ""))}</pre>` : `<p>${plain(p)}</p>`))
+    .map((p) => (indented(p) ? `<pre>${set(p.replace(/^ {4}/gm, ""))}</pre>` : `<p>${set(p)}</p>`))
     .join("");
 }
 
@@ -173,6 +179,7 @@ pre { white-space: pre-wrap; background: #f5f5f2; padding: .5em .7em; margin: .5
 .box p, .slip p { margin: .3em 0; display: inline; } .box li p, .box ol { margin: .2em 0; }
 .exercise { break-inside: auto; box-decoration-break: clone; } .exercise > p { display: block; break-inside: avoid; break-after: avoid; } .exercise > pre:last-child { break-before: avoid; }
  .exercise ul { list-style: none; padding-left: .5em; margin: .3em 0; }
+sub, sup { line-height: 0; font-size: .75em; }
 .form { font-size: 9pt; color: #444; padding-left: 1.2em; } .exercise svg { width: 70%; height: auto; }
 .exercise svg text { font: 13px "DejaVu Sans", sans-serif; } .exercise svg path { fill: none; stroke: #1a1a1a; } .exercise svg .grid { opacity: .25; } .exercise svg .curve { stroke-width: 2; }
 .exercise li { margin: .25em 0; } .asked { break-inside: avoid; break-after: avoid; } .form { break-inside: avoid; } .plot { break-inside: avoid; break-before: avoid; } .kept { white-space: nowrap; } .answers { font-size: 9.5pt; margin: .3em 0; } .answers p { display: inline; } .answers p + p { display: block; margin: .4em 0; }
