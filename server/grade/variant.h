@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HN_GRADE_VARIANT_H
 #define HN_GRADE_VARIANT_H
-// One variant of an exercise: its numbers drawn from a seed, its text, and its grading.
+// One variant of an exercise: its numbers drawn from a seed, and its grading. Its text:
+// variant_text.h.
 
 #include "grade/verdict.h"
 
@@ -28,13 +29,6 @@ uint64_t hn_variant_seed_said(const hn_exercise *exercise, const cJSON *submissi
 /// Refuses a submission with a seed and a student's name of which each says another variant: false,
 /// with the reason in the verdict.
 bool hn_variant_check_names(const hn_exercise *exercise, const cJSON *submission, hn_verdict *v);
-/// Statement, parts with their numbers, and the shape of a submission.
-void hn_variant_text(hn_strbuf *b, hn_variant *x);
-/// Writes how formulas are typed, a line for each kind of answer that has them.
-void hn_variant_notation(hn_strbuf *b, const hn_variant *x);
-/// Writes a hint of the exercise, from 1 to its n_hints, with the numbers of this variant.
-void hn_variant_hint(hn_strbuf *b, hn_variant *x, int number);
-void hn_variant_json(hn_strbuf *b, hn_variant *x);
 /// Grades a submission, an object with a member for each part, into the verdict.
 /// Fails: HN_ERR_INPUT (the exercise is at fault), HN_ERR_MEMORY, HN_ERR_STOPPED (its interrupt).
 HN_MUST_CHECK hn_status hn_variant_grade(hn_variant *x, const cJSON *submission, hn_verdict *v,

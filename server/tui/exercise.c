@@ -6,7 +6,7 @@
 #include "grade/exercise_shelf.h"
 #include "grade/exercise_text.h"
 #include "grade/grade.h"
-#include "grade/variant.h"
+#include "grade/variant_text.h"
 
 #include <ctype.h>
 #include <math.h>

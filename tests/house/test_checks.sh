@@ -75,6 +75,12 @@ expect 'layers: a fault is an exit status' 1 $?
 expect 'width: a line of 101 columns is found, 100 columns of any letters are not' \
     "$work/wide.c:3: 101 columns, 100 are allowed" "$(LC_ALL=C awk -f tests/tools/check-width.awk "$work/wide.c")"
 
+i=0 && while [ $i -lt 600 ]; do echo '//' && i=$((i + 1)); done >"$work/full.c"
+{ cat "$work/full.c" && echo '//'; } >"$work/long.c"
+expect 'width: a file of 601 lines is found, one of 600 is not' \
+    "$work/long.c: 601 lines, 600 are allowed; split it where a concept ends" \
+    "$(awk -f tests/tools/check-width.awk "$work/long.c" "$work/full.c")"
+
 # ---- functions ----
 for lines in 52 53; do
     printf 'static void of_%d(void) {\n' $lines

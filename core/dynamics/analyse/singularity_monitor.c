@@ -10,7 +10,6 @@
 #include "linalg/qr.h"
 
 #include <math.h>
-#include <stdbool.h>
 #include <string.h>
 
 static const double LOST = 1e-8;     // ratio below which rows count as lost

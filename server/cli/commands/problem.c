@@ -10,7 +10,7 @@
 #include "grade/exercise_check.h"
 #include "grade/exercise_text.h"
 #include "grade/rubric_apply.h"
-#include "grade/variant.h"
+#include "grade/variant_text.h"
 
 #include <math.h>
 #include <stdbool.h>

@@ -5,7 +5,7 @@
 #include "grade/exercise_shelf.h"
 #include "grade/exercise_text.h"
 #include "grade/grade.h"
-#include "grade/variant.h"
+#include "grade/variant_text.h"
 #include "http/ground/plain_number.h"
 #include "http/live/pulls.h"
 #include "http/request/context.h"

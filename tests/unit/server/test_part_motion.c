@@ -5,7 +5,7 @@
 #include "grade/exercise_check.h"
 #include "grade/grade.h"
 #include "grade/parts/circuit.h"
-#include "grade/variant.h"
+#include "grade/variant_text.h"
 
 #include "support/near.h"
 

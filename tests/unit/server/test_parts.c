@@ -4,7 +4,7 @@
 #include "grade/exercise_check.h"
 #include "grade/grade.h"
 #include "grade/parts/unit_text.h"
-#include "grade/variant.h"
+#include "grade/variant_text.h"
 
 #include "support/alloc.h"
 #include "support/near.h"
