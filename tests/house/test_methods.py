@@ -50,6 +50,28 @@ def replace_table(kind, table):
     return found == table
 
 
+UNITS = "zero one two three four five six seven eight nine ten eleven twelve thirteen fourteen fifteen sixteen seventeen eighteen nineteen".split()
+TENS = {2: "twenty", 3: "thirty", 4: "forty", 5: "fifty"}
+
+
+def in_words(n):
+    tens, unit = divmod(n, 10)
+    return UNITS[n] if n < 20 else TENS[tens] + (f"-{UNITS[unit]}" if unit else "")
+
+
+def wrong_counts(formulations, integrators):
+    """Sentences with a count that are not in their page as they have to be."""
+    wanted = (("README.md", f"knows {in_words(formulations)} formulations"),
+              ("core/README.md", f"constraints enter: {in_words(formulations)} rows"),
+              ("core/README.md", f"time advance: {in_words(integrators)} rows"))
+    missing = []
+    for page, words in wanted:
+        with open(page, encoding="utf-8") as f:
+            if words not in " ".join(f.read().split()):
+                missing.append(f"{page} should say '{words}'")
+    return missing
+
+
 def main():
     methods = listed()
     same = {kind: replace_table(kind, make(methods[kind])) for kind, make in
@@ -60,8 +82,10 @@ def main():
             for c in methods[kind] for key in keys if not c.get(key)]
     text = subprocess.run([PROGRAM, "list", "methods"], capture_output=True, text=True, check=True).stdout
     unsaid = [f["name"] for f in methods["formulations"] if f["when_not"] not in text or f["source"] not in text]
+    counts = wrong_counts(len(methods["formulations"]), len(methods["integrators"]))
     results = [
         *((f"{PAGES[kind]} has the table of the program", good, "run tests/house/test_methods.py --write") for kind, good in same.items()),
+        ("README files count formulations and integrators right", not counts, ", ".join(counts)),
         ("every card says what it has to", not dumb, ", ".join(dumb)),
         ("a person's list shows every card", not unsaid, ", ".join(unsaid)),
     ]

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "support/mechanism.h"
 
+#include "scene/joint_freedoms.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -387,8 +389,7 @@ static void random_body(unsigned *seed, const mechanism_opts *o, hn_body *body) 
 
 /// Room for as many coordinates as the type has, numbered on.
 static void add_coordinates(hn_scene *s, hn_joint *j, int joint) {
-    static const int counts[HN_JOINT_TYPE_COUNT] = {1, 1, 2, 2, 3, 3, 0, 6};
-    j->n_coordinates = counts[j->type];
+    (void)hn_joint_freedoms(j->type, &j->n_coordinates);
     j->coordinate = j->n_coordinates ? s->n_coordinates : -1;
     const int first_turn = j->type == HN_JOINT_FREE ? 3 : j->type == HN_JOINT_SPHERICAL ? 0 : 6;
     for (int k = 0; k < j->n_coordinates; k++) {
