@@ -43,6 +43,12 @@ function optionWords(spelling) {
   );
 }
 
+const ROW = 46; // letters of a verdict that a row of the first screen holds
+
+/** A long verdict in fewer words; the card and the line below have it whole. @param {string} words */
+const brief = (words) =>
+  words.length > ROW ? words.replace(/ from the true motion$/, " off") : words;
+
 /**
  * @param {HTMLElement} el
  * @param {import("../state/store.js").Store} store
@@ -306,7 +312,7 @@ export function createMethods(el, store, actions, openDialog) {
     const last = lastKnown(column.steps, now);
     const steps = column.steps[last];
     const verdict = verdictAt(data, m, now);
-    say(parts.verdict, verdict.words);
+    say(parts.verdict, brief(verdict.words));
     row.dataset.tone = verdict.tone;
     say(parts.gap, data.scene?.m > 0 ? gapWords(column.gap[last]) : "no loop");
     say(parts.off, errorWords(m, last));
