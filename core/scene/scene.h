@@ -158,8 +158,8 @@ typedef struct hn_load {
     hn_profile table;
 } hn_load;
 
-/// Constraints beside the joints, in a scene of bodies. A point's body gives the frame of
-/// directions.
+/// Kinds of constraints that a scene of bodies may have in addition to its joints. `direction` and
+/// `up` are given in the frame of the body of point q.
 typedef enum hn_constraint_kind {
     HN_CONSTRAINT_DISTANCE, ///< a rod without mass: points p and q stay `value` apart [m]
     HN_CONSTRAINT_LINE,     ///< p stays on the line through q along `direction`

@@ -11,8 +11,9 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/// Searches from s->x, pins held, and leaves the best pose found in s->x, s->q, s->residual,
-/// s->size. Returns HN_OK when it is closed.
+/// Searches for a configuration with closed loops, from the guess s->x on. Coordinates that the
+/// scene pins keep their values. The best configuration found is left in s->x, s->q, s->residual
+/// and s->size. Returns HN_OK when its loops are closed.
 /// Fails: HN_ERR_UNREACHABLE; HN_ERR_DIVERGED (phi is not finite at the guess); HN_ERR_MEMORY.
 HN_MUST_CHECK hn_status hn_assemble_position(hn_assembler *s);
 /// Descents from s->x, as many as wanted: each returns 1 when it closed the loops.

@@ -18,8 +18,9 @@
 #include "base/status.h"
 #include "dynamics/compile/system.h"
 
-/// Mass: independent of units; the velocity part never adds kinetic energy. Euclidean: least change
-/// of the system coordinates as numbers, metres and radians alike; offered for comparison.
+/// The measure by which a projection makes the least change. Mass: weighted with M, which does not
+/// depend on units and never adds kinetic energy to the velocities. Euclidean: of the system
+/// coordinates as plain numbers, metres and radians alike; offered for comparison.
 typedef enum hn_weight { HN_WEIGHT_MASS, HN_WEIGHT_EUCLIDEAN } hn_weight;
 
 typedef struct hn_project_info {

@@ -60,9 +60,10 @@ double hn_system_row_unit(const hn_system *sys, int row);
 /// The unit in which velocities are compared: the characteristic length for one of a length, else
 /// 1. With both, J is the same matrix for similar mechanisms of any size.
 double hn_system_velocity_unit(const hn_system *sys, int i);
-/// Properties of a loop: the joint (scene index) that closes it, -1 where a constraint or a formula
-/// does; its name.
+/// The joint that closes a loop, by its index in the scene; -1 where a constraint or a formula
+/// closes it.
 int hn_system_loop_joint(const hn_system *sys, int loop);
+/// The name of what closes a loop: of the joint or the constraint.
 const char *hn_system_loop_name(const hn_system *sys, int loop);
 /// The characteristic length [m] for relative tolerances: the largest distance between joint
 /// locations of one body; in a scene of formulas, the largest arm by which an angle moves a

@@ -7,8 +7,8 @@
 
 #include <stdbool.h>
 
-/// Wrenches of all joints for these multipliers, and of constraints between points; of a scene
-/// without mass or loads if `bare`.
+/// Computes the wrench of every joint and of every constraint between points for the multipliers
+/// `lambda`. With `bare` masses and loads are left out: what remains is the part of `lambda` alone.
 void hn_reaction_balance(hn_reactions *r, const double *lambda, int bare,
                          hn_reaction_wrench *constraint);
 /// Work of a tree joint's wrench along its own degrees of freedom against what is put in there,

@@ -51,7 +51,7 @@ bool hn_chart_is_closed(const hn_chart *chart, double gap, double last, double t
 HN_MUST_CHECK hn_status hn_chart_settle(hn_chart *chart);
 /// Checks the sign of det J_d as hn_chart_settle() does, and accepts nothing. Fails: HN_ERR_CHART.
 HN_MUST_CHECK hn_status hn_chart_check_mode(hn_chart *chart);
-/// Returns whether `point` is at (t, q) already: q (nq).
+/// Returns whether `point` was filled at this t and q (nq), so that it need not be filled again.
 bool hn_chart_is_at(const hn_chart *chart, const hn_chart_point *point, double t, const double *q);
 
 /// Fills the point at q, closed or not: J, N, s and the factor.

@@ -47,9 +47,10 @@ void hn_accel_jacobian_free(hn_accel_jacobian *j); ///< NULL is legal
 /// HN_ERR_SINGULAR, HN_ERR_DIVERGED.
 HN_MUST_CHECK hn_status hn_accel_jacobian_at(hn_accel_jacobian *j, double t, const double *q,
                                              const double *v, const hn_accel_law *law);
-/// Factors (2), for the next function. Fails: HN_ERR_SINGULAR, HN_ERR_DIVERGED.
+/// Factors the matrix on the left of (2), which the functions below solve with.
+/// Fails: HN_ERR_SINGULAR, HN_ERR_DIVERGED.
 HN_MUST_CHECK hn_status hn_accel_jacobian_prepare(hn_accel_jacobian *j);
-/// da (nv) of (2) along dx and dv (nv each, NULL: zero).
+/// Solves (2) for da (nv) with dx and dv (nv each, NULL: zero).
 void hn_accel_jacobian_along(hn_accel_jacobian *j, const double *dx, const double *dv, double *da);
 /// out (2 nv) = A' w with A = d(x', v')/d(x, v) along displacements: w (2 nv) weighs x' and v'; x'
 /// of a ball also turns with it. From the same factor, as (2) transposed is (2) with the

@@ -20,14 +20,14 @@ typedef enum hn_walk_end {
     HN_WALK_STOPPED, ///< on request
 } hn_walk_end;
 
-/// At time number k (1..n) of T k / n, the sample there. Returns 0 to end the walk as failed.
+/// Gets the sample at t = k T / n, for k = 1 to n. Returns 1 to go on, 0 to end the walk as failed.
 typedef int (*hn_walk_see)(void *user, int k, const hn_sample *sample);
 
-/// Steps from the run's start to T; `see` NULL: without looking, as a run that is timed. Fixed
-/// steps stay on their own grid.
+/// Takes a run from its start to T and calls `see` at n equal intervals. Fixed steps stay on their
+/// own grid. With `see` NULL no sample is taken, as in a run that is timed.
 hn_walk_end hn_walk(hn_run *run, double T, int n, const hn_walk_limits *limits, hn_walk_see see,
                     void *user);
-/// Whether what began at `started` (hn_clock_thread()) is within its limits: done while it may go
-/// on.
+/// Checks the limits of a computation that began at `started` (hn_clock_thread()). Returns
+/// HN_WALK_DONE while it may go on, else HN_WALK_OVER or HN_WALK_STOPPED.
 hn_walk_end hn_walk_ask(const hn_walk_limits *limits, double started);
 #endif
