@@ -40,6 +40,12 @@ export function createKeeper(store, fragmentOf) {
     methods: keepSoon,
     view: keepSoon,
     note: keepSoon,
+    // a step of a recording that stands; what plays is kept when it stands
+    frame: () => {
+      if (data.state !== "running") {
+        keepSoon();
+      }
+    },
     state: () => {
       keepSoon();
       if (opened && data.state === "running") {
