@@ -231,7 +231,7 @@ programs: $(PROGRAM) $(UNIT) $(SLOW) $(BENCH) $(TABLES)
 RUN_PACKAGES  := build-essential libmicrohttpd-dev libcjson-dev libgsl-dev libsundials-dev libsuitesparse-dev libosmesa6-dev libpng-dev zlib1g-dev libncurses-dev \
                  libxml2-dev libmd4c-dev ca-certificates node:nodejs npm:npm rsvg-convert:librsvg2-bin fonts-dejavu-core bwrap:bubblewrap
 TEST_PACKAGES := $(RUN_PACKAGES) libcmocka-dev pkg-config:pkg-config python3-scipy python3:python3 python3-jsonschema locales chromium:chromium \
-                 slurmctld slurmd slurm-client munge parallel zsh:zsh fish:fish groff:groff tmux:tmux nginx:nginx-light libmujoco-dev
+                 slurmctld slurmd slurm-client munge parallel zsh:zsh fish:fish groff:groff tmux:tmux nginx:nginx-light ncurses-term libmujoco-dev
 # for make languages alone: some 700 MB
 LANGUAGE_PACKAGES := $(TEST_PACKAGES) octave:octave javac:default-jdk-headless pdflatex:texlive-latex-base libeigen3-dev libejml-java python3-petsc4py \
                      python3-matplotlib
