@@ -45,7 +45,10 @@ function optionWords(spelling) {
 
 const ROW = 46; // letters of a verdict that a row of the first screen holds
 
-/** A long verdict in fewer words; the card and the line below have it whole. @param {string} words */
+/**
+ * A long verdict in fewer words; the card and the line below have it whole.
+ * @param {string} words
+ */
 const brief = (words) =>
   words.length > ROW ? words.replace(/ from the true motion$/, " off") : words;
 
