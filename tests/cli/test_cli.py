@@ -52,7 +52,9 @@ class CommandLine(Command):
         self.assertTrue(all(5 <= exercise["minutes"] <= 45 and exercise["minutes"] % 5 == 0 for exercise in exercises))
 
     def test_inspect_equations_and_terms_speak_of_the_scene(self):
-        self.assertTrue(self.assert_exit(call("inspect", "four-bar"), DONE))
+        text = self.assert_exit(call("inspect", "four-bar"), DONE)
+        self.assertIn("coordinates that the scene marks as actuated", text)
+        self.assertNotIn("driven", text)  # nothing drives it
         self.assertTrue(strict(self.assert_exit(call("inspect", "four-bar", "--json"), DONE)))
         self.assertTrue(self.assert_exit(call("equations", "four-bar"), DONE))
         self.assertIn("\\", self.assert_exit(call("equations", "four-bar", "--format", "latex"), DONE))

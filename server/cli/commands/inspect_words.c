@@ -21,8 +21,8 @@ const hn_outline_word hn_inspect_words[] = {
     {"redundant_rows.follow.from", "follows from"},
     {"redundant_rows.singular", "some only there: the start is a singular configuration"},
 
-    {"actuation", "drives"},
-    {"actuation.actuated", "driven coordinates"},
+    {"actuation", "where motors may act"},
+    {"actuation.actuated", "coordinates that the scene marks as actuated"},
     {"actuation.dof", "degrees of freedom"},
     {"actuation.reading", "that is"},
 
