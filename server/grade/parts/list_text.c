@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "grade/parts/list_text.h"
 
+#include "grade/parts/span.h"
+
 #include <ctype.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -8,21 +10,6 @@
 #include <string.h>
 
 enum { DEEPEST = 3, MOST_ENTRIES = 4096 };
-
-/// A stretch of the text: from `at` up to `end`.
-typedef struct span {
-    const char *at, *end;
-} span;
-
-static span trim(span s) {
-    while (s.at < s.end && isspace((unsigned char)*s.at)) {
-        s.at++;
-    }
-    while (s.end > s.at && isspace((unsigned char)s.end[-1])) {
-        s.end--;
-    }
-    return s;
-}
 
 static bool is_opening(char c) {
     return c == '[' || c == '(' || c == '{';
@@ -32,12 +19,12 @@ static bool is_closing(char c) {
     return c == ']' || c == ')' || c == '}';
 }
 
-static bool is_list(span s) {
+static bool is_list(hn_span s) {
     return s.at < s.end && (*s.at == '[' || *s.at == '{');
 }
 
 /// The bracket that closes the one at s.at; NULL: none.
-static const char *find_closing(span s) {
+static const char *find_closing(hn_span s) {
     int depth = 0;
     for (const char *c = s.at; c < s.end; c++) {
         depth += is_opening(*c) - is_closing(*c);
@@ -51,7 +38,7 @@ static const char *find_closing(span s) {
 // ---- what stands around a list ----
 
 /// Leaves "J =" before a list away, and the semicolon behind it.
-static span strip_assignment(span s) {
+static hn_span strip_assignment(hn_span s) {
     const char *c = s.at;
     while (c < s.end && (isalnum((unsigned char)*c) || *c == '_')) {
         c++;
@@ -66,22 +53,22 @@ static span strip_assignment(span s) {
     if (s.end > s.at && s.end[-1] == ';') {
         s.end--;
     }
-    return trim(s);
+    return hn_span_trim(s);
 }
 
 /// Leaves the call that makes a matrix of a list away: np.array([...], dtype=float).
-static span strip_call(span s) {
+static hn_span strip_call(hn_span s) {
     static const char *const MAKERS[] = {"np.array(",     "numpy.array(", "np.matrix(",
                                          "numpy.matrix(", "array(",       "matrix(",
                                          "sympy.Matrix(", "sp.Matrix(",   "Matrix("};
     for (size_t i = 0; i < sizeof MAKERS / sizeof *MAKERS; i++) {
         const size_t n = strlen(MAKERS[i]);
         if ((size_t)(s.end - s.at) > n && strncmp(s.at, MAKERS[i], n) == 0 && s.end[-1] == ')') {
-            const span inside = trim((span){s.at + n, s.end - 1});
+            const hn_span inside = hn_span_trim((hn_span){s.at + n, s.end - 1});
             const char *close = is_list(inside) ? find_closing(inside) : NULL;
-            const span rest = close ? trim((span){close + 1, inside.end}) : inside;
+            const hn_span rest = close ? hn_span_trim((hn_span){close + 1, inside.end}) : inside;
             const bool whole = close && (rest.at == rest.end || *rest.at == ',');
-            return whole ? (span){inside.at, close + 1} : s;
+            return whole ? (hn_span){inside.at, close + 1} : s;
         }
     }
     return s;
@@ -95,7 +82,7 @@ static bool is_operator(char c) {
 }
 
 /// Returns whether blanks part two entries: "a -b" does, "a - b" and "a * b" do not.
-static bool blanks_part(const char *before, const char *after, span s) {
+static bool blanks_part(const char *before, const char *after, hn_span s) {
     if (before <= s.at || after >= s.end || is_operator(before[-1])) {
         return false;
     }
@@ -107,7 +94,7 @@ static bool blanks_part(const char *before, const char *after, span s) {
 
 /// The end of the first piece of `s`: at a mark outside all brackets, or with mark ' ' at blanks
 /// that part entries. *next is where the rest begins.
-static const char *find_end(span s, char mark, const char **next) {
+static const char *find_end(hn_span s, char mark, const char **next) {
     int depth = 0;
     for (const char *c = s.at; c < s.end; c++) {
         depth += is_opening(*c) - is_closing(*c);
@@ -134,13 +121,13 @@ static const char *find_end(span s, char mark, const char **next) {
     return s.end;
 }
 
-static bool holds(span s, char mark) {
+static bool holds(hn_span s, char mark) {
     const char *next;
     return find_end(s, mark, &next) < s.end;
 }
 
-static cJSON *make_entry(span s) {
-    s = trim(s);
+static cJSON *make_entry(hn_span s) {
+    s = hn_span_trim(s);
     char *text = strndup(s.at, (size_t)(s.end - s.at)), *end = NULL;
     const double number = text ? strtod(text, &end) : 0;
     const bool is_number =
@@ -150,13 +137,13 @@ static cJSON *make_entry(span s) {
     return out;
 }
 
-static cJSON *read_list(span s, int depth);
+static cJSON *read_list(hn_span s, int depth);
 
 /// One piece of a list: a list itself, a row between semicolons, or an entry.
-static cJSON *read_piece(span s, char mark, int depth) {
-    s = trim(s);
+static cJSON *read_piece(hn_span s, char mark, int depth) {
+    s = hn_span_trim(s);
     if (is_list(s) && find_closing(s) == s.end - 1 && depth < DEEPEST) {
-        return read_list((span){s.at + 1, s.end - 1}, depth + 1);
+        return read_list((hn_span){s.at + 1, s.end - 1}, depth + 1);
     }
     return mark == ';' || mark == '\n' ? read_list(s, depth + 1) : make_entry(s);
 }
@@ -164,15 +151,15 @@ static cJSON *read_piece(span s, char mark, int depth) {
 /// Reads what stands between the brackets of a list. An empty piece between two marks is the empty
 /// text: it keeps its place, and hn_list_text_expand() counts it. NULL: too many entries, or no
 /// memory.
-static cJSON *read_list(span s, int depth) {
-    s = trim(s);
+static cJSON *read_list(hn_span s, int depth) {
+    s = hn_span_trim(s);
     const char mark = holds(s, ';') ? ';' : holds(s, ',') ? ',' : holds(s, '\n') ? '\n' : ' ';
     cJSON *out = cJSON_CreateArray();
     int n = 0;
     while (out && s.at < s.end) {
         const char *next;
         // rows on lines of their own may be lists: [[1 2]\n [3 4]]
-        const span piece = {s.at, find_end(s, mark, &next)};
+        const hn_span piece = {s.at, find_end(s, mark, &next)};
         cJSON *entry = n++ < MOST_ENTRIES ? read_piece(piece, mark, depth) : NULL;
         if (!entry || !cJSON_AddItemToArray(out, entry)) {
             cJSON_Delete(entry);
@@ -180,7 +167,7 @@ static cJSON *read_list(span s, int depth) {
             return NULL;
         }
         s.at = next;
-        s = mark == ';' ? trim(s) : s;
+        s = mark == ';' ? hn_span_trim(s) : s;
     }
     return out;
 }
@@ -193,7 +180,7 @@ static bool is_several(const cJSON *list) {
 // ---- LaTeX ----
 
 /// Finds what stands in the matrix of LaTeX that is the whole of `s`; false: there is none.
-static bool find_latex(span s, span *inside) {
+static bool find_latex(hn_span s, hn_span *inside) {
     static const char BEGIN[] = "\\begin{", END[] = "\\end{";
     const char *open = (size_t)(s.end - s.at) > strlen(BEGIN) ? strstr(s.at, BEGIN) : NULL;
     const char *name_end = open == s.at ? strchr(s.at, '}') : NULL;
@@ -204,12 +191,12 @@ static bool find_latex(span s, span *inside) {
         close + strlen(END) + n + 1 != s.end) {
         return false;
     }
-    *inside = trim((span){name_end + 1, close});
+    *inside = hn_span_trim((hn_span){name_end + 1, close});
     return true;
 }
 
 /// The end of a row: two backslashes, or the one before a blank that JSON made of them.
-static const char *find_row_end(span s, const char **next) {
+static const char *find_row_end(hn_span s, const char **next) {
     for (const char *c = s.at; c < s.end; c++) {
         const bool two = c[0] == '\\' && c + 1 < s.end && c[1] == '\\';
         if (two || (c[0] == '\\' && c + 1 < s.end && isspace((unsigned char)c[1]))) {
@@ -222,34 +209,34 @@ static const char *find_row_end(span s, const char **next) {
 }
 
 /// The rows between the two ends of the matrix, parted by & into entries.
-static cJSON *read_latex(span s) {
+static cJSON *read_latex(hn_span s) {
     cJSON *out = cJSON_CreateArray();
     int n = 0;
     while (out && s.at < s.end && n < MOST_ENTRIES) {
         const char *next, *after;
-        span row = {s.at, find_row_end(s, &next)};
+        hn_span row = {s.at, find_row_end(s, &next)};
         cJSON *list = cJSON_CreateArray();
         cJSON_AddItemToArray(out, list);
         do {
-            const span entry = {row.at, find_end(row, '&', &after)};
+            const hn_span entry = {row.at, find_end(row, '&', &after)};
             cJSON_AddItemToArray(list, make_entry(entry));
             row.at = after;
         } while (row.at < row.end && n++ < MOST_ENTRIES);
-        s = trim((span){next, s.end});
+        s = hn_span_trim((hn_span){next, s.end});
     }
     return out;
 }
 
 cJSON *hn_list_text_read(const char *text) {
-    span inside;
-    if (find_latex(strip_assignment(trim((span){text, text + strlen(text)})), &inside)) {
+    hn_span inside;
+    if (find_latex(strip_assignment(hn_span_trim((hn_span){text, text + strlen(text)})), &inside)) {
         return read_latex(inside);
     }
-    span s = strip_call(strip_assignment(trim((span){text, text + strlen(text)})));
+    hn_span s = strip_call(strip_assignment(hn_span_trim((hn_span){text, text + strlen(text)})));
     if (!is_list(s) || find_closing(s) != s.end - 1) {
         return NULL;
     }
-    cJSON *list = read_list((span){s.at + 1, s.end - 1}, 1);
+    cJSON *list = read_list((hn_span){s.at + 1, s.end - 1}, 1);
     if (!is_several(list)) {
         cJSON_Delete(list);
         return NULL;
