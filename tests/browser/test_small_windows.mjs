@@ -321,3 +321,15 @@ test("six methods have room at 1366x768: their list does not scroll", async (t) 
     assert.ok(last >= 0, `the sixth row ends ${-last} px below the list`);
   });
 });
+
+test("a long verdict is in its row in full, in fewer words where it must be", async (t) => {
+  const hash = "#scene=four-bar&method=baumgarte:alpha=20,beta=20@rk4:h=0.02";
+  const page = await open(t, { hash, viewport: LAPTOP });
+  await playTo(page, 6.4);
+  const words = page.locator("tbody .words").first();
+  await soon(async () =>
+    assert.match(await words.innerText(), /^closed to 6\d0 µm, but \d+ mm off$/),
+  );
+  assert.equal(await words.evaluate((node) => node.scrollWidth > node.clientWidth), false);
+  assert.match(await page.textContent("#verdict"), /but \d+ mm from the true motion/);
+});
