@@ -3,6 +3,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { createKinematics, jointPlace } from "../../web/state/kinematics.js";
+import { createPace } from "../../web/views/space/pace.js";
 import { violations } from "./axe.mjs";
 import {
   createBench,
@@ -249,6 +250,52 @@ test("from space to the plane and back: each is drawn by its own means", async (
   await soon(async () => assert.equal(await page.locator(".space-tools").isVisible(), false));
   await page.selectOption("#scene", "bennett");
   await isSolid(page);
+});
+
+test("pictures that come late have fewer pixels, and what stands still has all of them", () => {
+  const pace = createPace(true);
+  let now = 0;
+  const play = (pictures, span) => {
+    for (let k = 0; k < pictures; k++) {
+      pace.drawn(true, (now += span));
+    }
+    return pace.ratio(true, 2);
+  };
+  assert.equal(play(1, 5000), 1);
+  assert.equal(play(40, 16.7), 1, "in time");
+  assert.equal(play(20, 40), 0.75);
+  assert.equal(play(20, 40), 0.5);
+  assert.equal(play(200, 100), 0.5, "no coarser than half");
+  assert.equal(pace.ratio(false, 2), 1, "at rest");
+  assert.equal(play(1, 5000), 0.75, "the next movement is tried with more");
+
+  const card = createPace(false);
+  assert.equal(card.ratio(true, 2), 2);
+  Array.from({ length: 21 }, (_, k) => card.drawn(true, 40 * k));
+  assert.deepEqual([card.coarse, card.ratio(true, 2)], [true, 1], "first without shadows");
+});
+
+test("late pictures of a run have fewer pixels, the one it stops at has all", async (t) => {
+  const page = await open(t, {
+    hash: "#bennett",
+    fresh: true,
+    init: () => {
+      const soonest = globalThis.requestAnimationFrame.bind(globalThis);
+      globalThis.requestAnimationFrame = (draw) => setTimeout(() => soonest(draw), 40);
+    },
+  });
+  await isSolid(page);
+  const pixels = () =>
+    page.evaluate(() => {
+      const canvas = document.querySelector(".space canvas");
+      return canvas.width / canvas.clientWidth;
+    });
+  const whole = await pixels();
+  await page.focus("#play");
+  await page.keyboard.press("Space");
+  await soon(async () => assert.ok((await pixels()) <= 0.75 * whole));
+  await page.keyboard.press("Space");
+  await soon(async () => assert.ok(Math.abs((await pixels()) - whole) < 0.01));
 });
 
 test("without WebGL the flat drawing stays, and nothing is fetched for solids", async (t) => {

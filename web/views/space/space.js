@@ -10,12 +10,12 @@ import { h } from "../../widgets/dom.js";
 import { boxOf } from "./box.js";
 import { makeFloor } from "./floor.js";
 import { makeBase, makeModel, makeReference, release, widthOf } from "./models.js";
+import { createPace } from "./pace.js";
 import { createRig } from "./rig.js";
 import { createTools } from "./tools.js";
 import { createTrail } from "./trail.js";
 
 const MOST_PIXELS = 2; // of the canvas per pixel of the page
-const SLOW = 30; // [ms] a picture: then shadows and fine pixels are left out
 const SETTLED = 300; // [ms] after a movement of the view
 const INSIDE = 0.04; // of half a bar's width: so near, a slimmer solid is hidden in a thicker one
 const NEAR = 0.02; // of the distance
@@ -53,8 +53,8 @@ const colourOf = (name) => getComputedStyle(document.documentElement).getPropert
  */
 export function createSpace(frame, store, actions, drawing) {
   const data = store.data;
-  const coarse = drawsBySoftware();
-  const renderer = makeRenderer(coarse);
+  const pace = createPace(drawsBySoftware());
+  const renderer = makeRenderer(pace.coarse);
   const rig = createRig(data, drawing.size);
   const world = new THREE.Scene();
   const cameras = {
@@ -76,7 +76,6 @@ export function createSpace(frame, store, actions, drawing) {
   let told = null;
   let seen = data.view.look;
   let lost = false;
-  let pace = { last: 0, slow: 0, coarse };
   const tools = createTools(frame, rig, data, actions, {
     refit: moved,
     frames: () => frames,
@@ -209,16 +208,22 @@ export function createSpace(frame, store, actions, drawing) {
     return camera;
   }
 
-  /** A machine that is slow gets coarser pictures; never back, so that they do not flicker. */
+  const moves = () => data.state === "running" || data.view.replaying;
+
+  const finest = () => Math.min(MOST_PIXELS, devicePixelRatio);
+
+  /** @param {number} ratio pixels of the canvas per pixel of the page */
+  function setPixels(ratio) {
+    if (renderer.getPixelRatio() !== ratio) {
+      renderer.setPixelRatio(ratio);
+    }
+  }
+
+  /** Pictures that come late are made coarser. */
   function keepPace() {
-    const now = performance.now();
-    const since = now - pace.last;
-    pace.last = now;
-    const running = data.state === "running" || data.view.replaying;
-    pace.slow = running && since < 500 && since > SLOW ? pace.slow + 1 : 0;
-    if (pace.slow > 30 && !pace.coarse) {
-      pace.coarse = true;
-      renderer.setPixelRatio(1);
+    const { coarse } = pace;
+    pace.drawn(moves(), performance.now());
+    if (pace.coarse !== coarse) {
       renderer.shadowMap.enabled = false;
       make();
     }
@@ -273,6 +278,14 @@ export function createSpace(frame, store, actions, drawing) {
     });
   }
 
+  /** @param {number} now index of the frame shown */
+  function render(now) {
+    drawGhosts(now);
+    drawReference(now);
+    drawTrails(now);
+    renderer.render(world, setCamera());
+  }
+
   canvas.addEventListener("webglcontextlost", (event) => {
     event.preventDefault();
     lost = true;
@@ -296,7 +309,7 @@ export function createSpace(frame, store, actions, drawing) {
     camera: rig.camera,
     resize() {
       const { width, height } = drawing.size;
-      renderer.setPixelRatio(pace.coarse ? 1 : Math.min(MOST_PIXELS, devicePixelRatio));
+      setPixels(pace.ratio(moves(), finest()));
       renderer.setSize(width, height);
     },
     /**
@@ -304,19 +317,13 @@ export function createSpace(frame, store, actions, drawing) {
      * @param {number} now index of the frame shown @param {number} scale
      */
     picture(now, scale) {
-      const ratio = renderer.getPixelRatio();
       const copy = document.createElement("canvas");
-      if (scale !== ratio) {
-        renderer.setPixelRatio(scale);
-      }
-      this.draw(now);
+      setPixels(scale);
+      render(now);
       copy.width = canvas.width;
       copy.height = canvas.height;
       copy.getContext("2d")?.drawImage(canvas, 0, 0); // what WebGL drew is gone after this task
-      if (scale !== ratio) {
-        renderer.setPixelRatio(ratio);
-        this.draw(now);
-      }
+      this.draw(now);
       return copy;
     },
     show(on) {
@@ -336,14 +343,11 @@ export function createSpace(frame, store, actions, drawing) {
     },
     /** @param {number} now index of the frame shown */
     draw(now) {
-      if (!made || lost) {
-        return;
+      if (made && !lost) {
+        setPixels(pace.ratio(moves(), finest()));
+        render(now);
+        keepPace();
       }
-      drawGhosts(now);
-      drawReference(now);
-      drawTrails(now);
-      renderer.render(world, setCamera());
-      keepPace();
     },
     dispose() {
       clearTimeout(settled);
