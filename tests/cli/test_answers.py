@@ -29,7 +29,7 @@ def readings(folder):
 
 
 def rates_of_a_part(folder):
-    """Every spelling of the crank's rate is the rate that the part asks for, not the given speed."""
+    """Every spelling of a rate or an angle is that of the part, not the given number."""
     for spelt in ("u1", "w1", "omega_1", "\\omega_1", "\\dot\\theta_1", "\\dot{\\theta}_1", "thdot1"):
         second = "\\dot\\theta_2" if "dot\\" in spelt else "u2"
         path = write(folder, "rate.json", {"student": "s1001", "a": f"-l1*sin(th1)*{spelt}-l2*sin(th2)*{second}"})
@@ -38,6 +38,14 @@ def rates_of_a_part(folder):
         path = write(folder, "rate.json", {"c": f"-m2*l1*l2*sin(th1-th2)*{spelt}^2/2+9.81*m2*l2*cos(th2)/2"})
         done = run("grade", "fourbar", path)
         expect(f"fourbar c with {spelt} squared is right", "2 / 2  right" in done.stdout, done.stdout + done.stderr)
+
+    # so is every spelling of its angles, and the given numbers of these angles are not offered
+    for one, two in (("t1", "t2"), ("t_1", "t_2"), ("q1", "θ2"), ("theta_1", "th2")):
+        path = write(folder, "angle.json", {"student": "s1001", "a": f"-l1*sin({one})*u1-l2*sin({two})*u2"})
+        done = run("grade", "closure", path)
+        expect(f"closure a with {one} and {two} is right", "2 / 2  right" in done.stdout, done.stdout + done.stderr)
+    asked = run("problem", "closure").stdout.split("\nb) ")[0]
+    expect("closure a offers no number for its angles", "t1 =" not in asked.split("with numbers given")[1], asked)
 
     # the given number keeps its name where the part has no such rate; of two rates the name must say which
     part = {"id": "a", "ask": "?", "kind": "formula", "points": 1, "states": {"x": {"range": [1, 2]}}, "answer": "w1*x", "second": "x*w1"}

@@ -46,6 +46,68 @@ def formulas(folder):
     named(folder, "p2", "c", "M*Ndot*u", "not-projected", "h is missing")
 
 
+# exercise, part, a wrong answer as a formula of the variant's numbers, its name, words of the sentence
+FIRST_READERS = (
+    ("loops", "c", "d - l1*cos(th1)", "along-x", "above the line of the pivots"),
+    ("grashof", "a", "l2 + l3 + d - max(l2, d)", "others", "must be subtracted"),
+    ("closure", "c", "l1*sin(t2-t1)/(l3*sin(t2-t3))", "ratio", "for 1 rad/s"),
+    ("closure", "c", "l1*w1*sin(t1)/(l3*sin(t3))", "one-equation", "the coupler turns as well"),
+    ("slider", "c", "r*w", "tip", "the crank's tip"),
+    ("driven", "b", "th0 + w*t1 + k*t1**2/2", "whole-angle", "not its rate"),
+    ("atwood", "b", "9.81*(m1+m2)", "both-weights", "the force on the wheel"),
+    ("atwood", "b", "9.81*(m2-m1)", "difference", "not the force in the rope"),
+    ("forces", "a", "m*(9.81*cos(th*pi/180)+L*w**2)", "", "th in radians"),
+    ("forces", "b", "-m*(9.81*cos(th)+L*w**2)*L", "multiplied", "divide the tension"),
+    ("forces", "e", "0", "zero", "a straight line in time"),
+    ("index", "a", "2*n+m", "state", "are known"),
+    ("newton", "a", "-2*9.81/L", "point-centre", "at the centre"),
+    ("newton", "b", "3*m*9.81/4", "only-inertia", "carries the rest"),
+    ("newton", "c", "2*k-2", "without-top", "the first rod"),
+    ("basis", "b", "-l1*sin(t1-t3)/(l2*sin(t2-t3))", "ratio", "for 1 rad/s"),
+    ("motors", "c", "0", "cancel", "the rates are not equal"),
+    ("trammel", "c", "(ma-m)*L**2*sin(th0)*cos(th0)*w**2", "other-mass", "the mass at A"),
+    ("trammel", "c", "m*L**2*sin(th0)*cos(th0)*w**2", "sum", "opposite signs"),
+    ("flywheel", "a", "w", "same", "the energy is kept"),
+    ("flywheel", "c", "(M1+If)*w**2/2", "with-flywheel", "with the flywheel"),
+    ("fold", "b", "acos((d**2+(l2+l3)**2-l1**2)/(2*d*(l2+l3)))", "other-angle", "the rocker's pivot"),
+    ("passive", "c", "(tq+B*sin(q0)*w**2/2)*w", "inertia", "because M_r does"),
+    ("energy", "b", "m1*l1**2*w1**2/8", "shift-alone", "the rod turns as well"),
+    ("energy", "c", "9.81*(m1*l1/2*sin(t1)+m2*(l1*sin(t1)+l2/2*sin(t2))+m3*l3/2*sin(t3))+m1*l1**2*w1**2/6", "with-crank", "released from rest"),
+    ("newton-step", "c", "-asin(r*sin(th)/l)", "solution", "one step does not reach it"),
+    ("newton-step", "b", "cos(p0)", "no-length", "the length of the rod"),
+    ("transmission", "a", "acos((l2**2+l3**2-l1**2-d**2+2*l1*d*cos(th))/(2*l2*l3))", "angle", "its cosine is asked for"),
+    ("forecast", "b", "gp/4", "quarter", "order was taken as two"),
+    ("forecast", "c", "sqrt(1000/gp)", "no-start", "multiply it"),
+    ("baumgarte", "a", "p0+v0*t", "free", "without feedback"),
+    ("projection", "c", "(x*vy-y*vx)/sqrt(x**2+y**2)", "along-circle", "along the circle"),
+)
+
+
+def first_readers(folder):
+    """What readers of the lessons answered before they knew better."""
+    known = {name: getattr(math, name) for name in ("sin", "cos", "asin", "acos", "sqrt", "pi")} | {"max": max}
+    for exercise, part, formula, mistake, words in FIRST_READERS:
+        numbers = json.loads(run("problem", exercise, "--seed", "3", "--json").stdout)["numbers"]
+        value = eval(formula, {"__builtins__": {}}, known | numbers)
+        _, _, entry = graded(folder, exercise, part, value, "--seed", "3")
+        good = not entry["right"] and words in entry["explanation"] and mistake in ("", entry["mistake"])
+        expect(f"{exercise} {part}: {formula} is called {mistake or words}", good, f"{entry['mistake']}: {entry['explanation']}")
+    for exercise, part, answer, mistake, words in (
+            ("p4", "a", "Phi'*M*Phi", "matrix", "v is missing on both sides"), ("reduced", "d", "Phi'*(C*Phi - M*Phidot)", "sign-phidot", "wrong sign"),
+            ("reduced", "d", "Phidot'*M*Phi + Phi'*C*Phi", "turned", "the right factor"),
+            ("drift", "f", "v - inv(M)*J'*inv(J*inv(M)*J')*J*v", "new-velocity", "the correction alone"),
+            ("drift", "f", "-J'*inv(J*inv(M)*J')*J*v", "outer-mass", "stands before J'")):  # fmt: skip
+        named(folder, exercise, part, answer, mistake, words)
+
+    # where the links stood at the start the loop is closed, and the assembly mode is that of the motion
+    numbers = json.loads(run("problem", "motion-plot", "--json").stdout)["numbers"]
+    x, y, l2, l3 = math.cos(1), math.sin(1), numbers["l2"], numbers["l3"]
+    line = math.hypot(2.2 - x, y)
+    th2 = math.atan2(-y, 2.2 - x) + math.acos((l2**2 + line**2 - l3**2) / (2 * l2 * line))
+    th3 = math.atan2(y + l2 * math.sin(th2), x + l2 * math.cos(th2) - 2.2)
+    named(folder, "motion-plot", "d", {"th1": 1, "th2": th2, "th3": th3}, "other-time", "at another time")
+
+
 def shapes(folder):
     """Two operands that do not fit are named with their shapes."""
     shown = "N'*M*Ndot is 3 x 3 and N'*h is 3 x 1: they cannot be added; a factor or a transpose may be missing"
@@ -147,4 +209,4 @@ def follow_ons(folder):
 
 
 if __name__ == "__main__":
-    sys.exit(speak_tap([formulas, shapes, bases, numbers, decimal_commas, follow_ons]))
+    sys.exit(speak_tap([formulas, first_readers, shapes, bases, numbers, decimal_commas, follow_ons]))

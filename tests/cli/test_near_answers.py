@@ -398,6 +398,13 @@ def two_at_once(folder):
         expect(f"{text} is named", all(word in found["explanation"] for word in words) and (len(words) > 1) == ("two mistakes" in found["explanation"]), found["explanation"])
     found = entry(folder, "drift", "e", "-gamma + alpha*J*v - beta^2*phi", "--seed", "3")
     expect("a term is not missing where it has the wrong sign", "oscillates" not in found["explanation"], found["explanation"])
+    # so are two mistakes in different blocks of a system
+    lower, plain = [["M", "J'"], ["J", "0"]], "S'*tau - h"
+    for matrix, right, unknowns, words in ((lower, [plain, "gamma"], ["a", "lambda"], ["J' has the other sign", "gamma has the wrong sign"]),
+                                           (lower, ["S'*tau + h", "gamma"], ["a", "-lambda"], ["gamma has the wrong sign", "h goes to the right-hand side"])):  # fmt: skip
+        found = entry(folder, "p1", "a", {"matrix": matrix, "right": right, "unknowns": unknowns})
+        expect(f"a system with {right} and {unknowns} is named", found["explanation"].startswith("two mistakes at once") and found["points"] == 1
+               and all(word in found["explanation"] for word in words), str(found))  # fmt: skip
     # an angle of hundredths has the cosine of none
     for exercise, answer in (("quaternion", 1), ("joint-shaft", json.loads(run("problem", "joint-shaft", "--seed", "3", "--json").stdout)["numbers"]["w"])):
         found = entry(folder, exercise, "a", answer, "--seed", "3")

@@ -86,6 +86,10 @@ static int find_aliases(const hn_draw *d, const char *name, int first, int found
     return n;
 }
 
+bool hn_draw_turns(const hn_draw *d, int i) {
+    return strcmp(d->unit[i], "rad/s") == 0 || strcmp(d->unit[i], "rad") == 0;
+}
+
 static int find_answer_name(answer_names *a, const char *name) {
     const hn_draw *d = a->draw;
     char joined[MAX_WORD];
@@ -95,8 +99,8 @@ static int find_answer_name(answer_names *a, const char *name) {
         name = joined;
     }
 
-    // a given number keeps its name, but a given rate yields to the rate of the part
-    if (i >= d->n_outer || (i >= 0 && strcmp(d->unit[i], "rad/s") != 0)) {
+    // a given number keeps its name, but a given angle or rate yields to that of the part
+    if (i >= d->n_outer || (i >= 0 && !hn_draw_turns(d, i))) {
         return i;
     }
     int n = find_aliases(d, name, d->n_outer, found);

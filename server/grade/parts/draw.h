@@ -47,11 +47,13 @@ void hn_draw_reset(hn_draw *d);
 /// One formula in these names; theta_1 and theta1 stand for th1 where th1 is a name.
 HN_MUST_CHECK hn_status hn_draw_parse(hn_draw *d, const char *text, hn_ex *out, hn_diag *diag);
 /// One formula of an answer. Other spellings (thetadot1, omega1) are looked for among the part's
-/// own names before those that are given, and a given rate (in rad/s) is read as the part's own
-/// rate of that index: w1 as u1. Fails: HN_ERR_INPUT (also for a spelling of two names; `diag`
+/// own names before those that are given, and a given angle or rate is read as the part's own of
+/// that index: t1 as th1, w1 as u1. Fails: HN_ERR_INPUT (also for a spelling of two names; `diag`
 /// names both), HN_ERR_MEMORY.
 HN_MUST_CHECK hn_status hn_draw_parse_answer(hn_draw *d, const char *text, hn_ex *out,
                                              hn_diag *diag);
+/// Returns whether a name has the unit of an angle or of an angular velocity.
+bool hn_draw_turns(const hn_draw *d, int i);
 /// The name that a name of an answer stands for, borrowed; NULL: none, or more than one.
 const char *hn_draw_answer_name(hn_draw *d, const char *name);
 double hn_draw_eval(hn_draw *d, hn_ex e, int state);

@@ -255,22 +255,75 @@ static int agrees(const solution *a, const solution *b, int k, double sign) {
     return hn_world_distance(&a->x[k], &b->x[k], sign) <= ALLOWED;
 }
 
-/// Names the mistake: a listed one with the same solution, or an unknown with the wrong sign.
+/// Returns whether a wrong system has the solution that was given.
+static bool is_solution(const hn_part *p, hn_world *w, const cJSON *answer, const solution *given) {
+    solution wrong;
+    bool same = solve(p, w, answer, NULL, &wrong);
+    for (int k = 0; k < given->n && same; k++) {
+        same = agrees(given, &wrong, k, 1);
+    }
+    return same;
+}
+
+/// Puts into `both` what `fault` changes of the reference, entry by entry. Returns whether no entry
+/// of `both` has been changed before.
+static bool put_changes(cJSON *both, const cJSON *reference, const cJSON *fault) {
+    const cJSON *old = reference->child, *changed = fault->child;
+    bool apart = true;
+    for (cJSON *m = both->child, *next; m && old && changed && apart; m = next) {
+        next = m->next;
+        if (cJSON_IsArray(m) && cJSON_IsArray(old) && cJSON_IsArray(changed)) {
+            apart = put_changes(m, old, changed);
+        } else if (!cJSON_Compare(old, changed, true)) {
+            apart = cJSON_Compare(m, old, true);
+            cJSON *copy = cJSON_Duplicate(changed, true);
+            apart &= copy && cJSON_ReplaceItemViaPointer(both, m, copy);
+        }
+        old = old->next;
+        changed = changed->next;
+    }
+    return apart;
+}
+
+/// Names two listed mistakes in different entries that lead to the solution together.
+static bool explain_pair(const hn_part *p, hn_world *w, const solution *given, hn_part_result *r) {
+    const cJSON *reference = cJSON_GetObjectItemCaseSensitive(p->node, "answer"), *one, *two;
+    bool found = false;
+    for (int i = 0; (one = hn_part_fault_at(p, i)) != NULL && !found; i++) {
+        for (int k = i + 1; (two = hn_part_fault_at(p, k)) != NULL && !found; k++) {
+            cJSON *both = cJSON_Duplicate(reference, true);
+            found = both &&
+                    put_changes(both, reference, cJSON_GetObjectItemCaseSensitive(one, "answer")) &&
+                    put_changes(both, reference, cJSON_GetObjectItemCaseSensitive(two, "answer")) &&
+                    is_solution(p, w, both, given);
+            cJSON_Delete(both);
+            if (found) {
+                const double share = hn_part_number(one, "share", 0);
+                hn_part_wrong(r, hn_part_text(one, "id"), share * hn_part_number(two, "share", 0),
+                              "two mistakes at once: %s; and %s", hn_part_text(one, "says"),
+                              hn_part_text(two, "says"));
+                r->alone = share;
+            }
+        }
+    }
+    return found;
+}
+
+/// Names the mistake: a listed one with the same solution, or two of them, or an unknown with the
+/// wrong sign.
 static void explain(const hn_part *p, hn_world *w, const solution *given, const solution *wanted,
                     hn_part_result *r) {
     // a listed mistake that leads to the same solution
     const cJSON *fault;
     for (int i = 0; (fault = hn_part_fault_at(p, i)) != NULL; i++) {
-        solution wrong;
-        int same = solve(p, w, cJSON_GetObjectItemCaseSensitive(fault, "answer"), NULL, &wrong);
-        for (int k = 0; k < wanted->n && same; k++) {
-            same &= agrees(given, &wrong, k, 1);
-        }
-        if (same) {
+        if (is_solution(p, w, cJSON_GetObjectItemCaseSensitive(fault, "answer"), given)) {
             hn_part_wrong(r, hn_part_text(fault, "id"), hn_part_number(fault, "share", 0), "%s",
                           hn_part_text(fault, "says"));
             return;
         }
+    }
+    if (explain_pair(p, w, given, r)) {
+        return;
     }
 
     // the unknowns that differ, and those that differ by the sign alone

@@ -30,6 +30,7 @@ enum { MAX = HN_PART_ENTRIES, MAX_ASKED = HN_PART_RESULTS, MAX_TRIES = 40, MAX_S
 static const double PI = 3.14159265358979324;
 static const double WITHIN = 0.03, STRIDE = 0.05;
 static const double NEAR = 3; // times `within`: an answer so near is a matter of exactness
+static const char OTHER_BRANCH[] = "other-branch", OTHER_TIME[] = "other-time";
 static const double LARGEST_ANGLE = 1e6; // [rad] beyond, nobody means a direction
 
 /// The mechanism, what is asked, and the configuration that is expected.
@@ -210,18 +211,24 @@ static bool assemble_from(const sheet *s, const double *given, double *out) {
     return closed;
 }
 
-/// Returns whether the whole answer is another configuration in which the loops close.
-static bool is_other_branch(const sheet *s, const double *given) {
+/// The mistake of a whole answer in which the loops close, elsewhere than expected: another
+/// assembly mode, or another time of a motion. NULL: it is none.
+static const char *find_closed(const sheet *s, const double *given) {
     double other[MAX], moved = 0, differs = 0;
     if (!assemble_from(s, given, other)) {
-        return false;
+        return NULL;
     }
     for (int k = 0; k < s->n_asked; k++) {
         const int i = s->asked[k];
         moved = fmax(moved, apart(s, i, given[k], other[i]));
         differs = fmax(differs, apart(s, i, other[i], s->expected[i]));
     }
-    return moved <= s->within && differs > 3 * s->within;
+    if (moved > s->within || differs <= 3 * s->within) {
+        return NULL;
+    }
+    const bool moved_on =
+        field(s->p, "time") && hn_pose_solver_same_modes(s->solver, other, s->expected);
+    return moved_on ? OTHER_TIME : OTHER_BRANCH;
 }
 
 /// Another closed configuration with the same held coordinates; false: none was found.
@@ -238,7 +245,7 @@ static bool find_branch(const sheet *s, double *asked) {
             for (int k = 0; k < s->n_asked; k++) {
                 asked[k] = other[s->asked[k]];
             }
-            if (is_other_branch(s, asked)) {
+            if (find_closed(s, asked) == OTHER_BRANCH) {
                 return true;
             }
         }
@@ -365,7 +372,7 @@ static void say_closed(const sheet *s, const double *given, char *text, size_t s
     }
 }
 
-static void judge(const sheet *s, int k, const double *given, bool all, bool branch,
+static void judge(const sheet *s, int k, const double *given, bool all, const char *closed,
                   hn_part_result *r) {
     const int i = s->asked[k];
     char open[100] = "";
@@ -380,10 +387,12 @@ static void judge(const sheet *s, int k, const double *given, bool all, bool bra
         hn_part_right(r);
         return;
     }
-    if (branch) {
+    if (closed) {
+        const bool time = closed == OTHER_TIME;
         say_closed(s, given, open, sizeof open);
-        hn_part_wrong(r, "other-branch", 0.5,
-                      "the loop closes here too%s, but in the other assembly mode", open);
+        hn_part_wrong(r, closed, time ? 0.25 : 0.5, "the loop closes here too%s, but %s", open,
+                      time ? "the links stand there at another time"
+                           : "in the other assembly mode");
         return;
     }
     const int slip = find_slip(s, k, given[k]);
@@ -419,10 +428,10 @@ static hn_status grade(const hn_part *p, const cJSON *given, hn_part_result *res
     }
     *n = s->n_asked;
     const bool all = read_entries(s, given, x, results);
-    const bool branch = all && is_other_branch(s, x);
+    const char *closed = all ? find_closed(s, x) : NULL;
     for (int k = 0; k < s->n_asked; k++) {
         if (isfinite(x[k])) {
-            judge(s, k, x, all, branch, &results[k]);
+            judge(s, k, x, all, closed, &results[k]);
         }
     }
     hn_part_qualify(results, *n);
@@ -461,7 +470,7 @@ static cJSON *right(const hn_part *p, hn_diag *diag) {
 /// slip gives a value that is right, or that of a slip before it.
 static void make_fault(const sheet *s, int i, double *asked, const char **id) {
     if (i == 0) {
-        *id = !field(s->p, "time") && find_branch(s, asked) ? "other-branch" : "";
+        *id = !field(s->p, "time") && find_branch(s, asked) ? OTHER_BRANCH : "";
         return;
     }
     const int slip = (i - 1) % N_SLIPS, k = (i - 1) / N_SLIPS;
@@ -470,7 +479,8 @@ static void make_fault(const sheet *s, int i, double *asked, const char **id) {
         if (isfinite(x) && find_slip(s, k, x) == slip &&
             apart(s, s->asked[k], x, s->expected[s->asked[k]]) > s->within) {
             asked[k] = x;
-            *id = is_other_branch(s, asked) ? "other-branch" : SLIPS[slip].id;
+            const char *closed = find_closed(s, asked);
+            *id = closed ? closed : SLIPS[slip].id;
             return;
         }
     }

@@ -149,14 +149,17 @@ static bool is_slip(const slip *x, double value) {
     return apart <= x->near && (value == 0 || apart <= OF_SIZE * fabs(x->value));
 }
 
-/// The first slip that gives a value, and of the readings one on the axis that is asked for; false:
-/// none does.
+/// The slip that comes nearest to a value; one on the axis that is asked for comes before one on
+/// the other. False: none gives the value.
 static bool find_slip(const sheet *s, double value, slip *out) {
     slip x;
     bool found = false;
     for (int i = 0; get_slip(s, i, &x); i++) {
         const bool other_axis = strcmp(x.id, "other-axis") == 0;
-        if (is_slip(&x, value) && (!found || (!other_axis && !strcmp(out->id, "other-axis")))) {
+        const bool was_other = found && strcmp(out->id, "other-axis") == 0;
+        const bool nearer =
+            found && other_axis == was_other && fabs(value - x.value) < fabs(value - out->value);
+        if (is_slip(&x, value) && (!found || (was_other && !other_axis) || nearer)) {
             *out = x;
             found = true;
         }

@@ -349,10 +349,11 @@ static void put_tolerance(hn_strbuf *b, const hn_part *p) {
     }
 }
 
-/// Returns whether a given rate is read as the part's own rate of that index (draw.h): w1 as u1.
+/// Returns whether a given angle or rate is read as the part's own of that index (draw.h): t1 as
+/// th1, w1 as u1.
 static bool is_read_as_own(const hn_part *p, int i, const cJSON *states) {
     char other[64];
-    if (strcmp(p->draw->unit[i], "rad/s") != 0) {
+    if (!hn_draw_turns(p->draw, i)) {
         return false;
     }
     for (int k = 0; hn_spelling_alias(p->draw->name[i], k, other, sizeof other); k++) {

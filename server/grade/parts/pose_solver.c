@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "grade/parts/pose_solver.h"
 
+#include "dynamics/assembly/mode.h"
 #include "dynamics/compile/coordinates.h"
 #include "dynamics/evaluate/eval.h"
 #include "linalg/qr.h"
@@ -241,4 +242,25 @@ int hn_pose_solver_direction(hn_pose_solver *s, double *direction) {
     direction[m - 1] = 1;
     hn_qr_apply_q(&s->qr, direction);
     return freedoms;
+}
+
+bool hn_pose_solver_same_modes(const hn_pose_solver *s, const double *one, const double *other) {
+    hn_mode_watch *watch = NULL;
+    hn_arena *arena = hn_arena_create(0);
+    double *q = arena ? hn_arena_doubles(arena, (size_t)s->nq + 1) : NULL;
+    bool same = true;
+    if (q && hn_mode_watch_create(s->sys, arena, &watch) == HN_OK) {
+        const int n = hn_mode_watch_count(watch);
+        double *values = hn_arena_doubles(arena, 2 * (size_t)n + 1);
+        for (int k = 0; k < 2 && values; k++) {
+            hn_system_from_user(s->sys, k ? other : one, q);
+            hn_mode_watch_values(watch, 0, q, values + (size_t)k * (size_t)n);
+        }
+        for (int i = 0; i < n && values; i++) {
+            same &= hn_mode_sign(values[i]) == hn_mode_sign(values[n + i]);
+        }
+    }
+    hn_mode_watch_free(watch);
+    hn_arena_free(arena);
+    return same;
 }

@@ -40,4 +40,7 @@ HN_MUST_CHECK hn_status hn_pose_solver_close(hn_pose_solver *s, const bool *held
 /// length 1, each divided by its reach. Returns the degrees of freedom; `direction` is set where
 /// they are 1.
 int hn_pose_solver_direction(hn_pose_solver *s, double *direction);
+/// Returns whether every loop has the same assembly mode in two poses (n coordinates each); true
+/// where the modes of a loop are not told apart, or memory is out.
+bool hn_pose_solver_same_modes(const hn_pose_solver *s, const double *one, const double *other);
 #endif

@@ -577,20 +577,21 @@ static void move_dot(const char *name, char out[MAX_NAME]) {
 }
 
 int hn_spelling_alias(const char *name, int i, char *out, size_t size) {
-    // an angular velocity is w1 or u1 here, and an angle th1
+    // an angular velocity is w1 or u1 here, and an angle th1; t alone is the time
     static const char *const aliases[][2] = {
         {"thetadot", "w"}, {"thetadot", "om"}, {"thetadot", "u"}, {"thdot", "w"},  {"thdot", "u"},
         {"dtheta", "w"},   {"dtheta", "u"},    {"dth", "w"},      {"dth", "u"},    {"qdot", "w"},
         {"qdot", "u"},     {"dq", "w"},        {"dq", "u"},       {"theta", "th"}, {"q", "th"},
         {"omega", "w"},    {"omega", "om"},    {"omega", "u"},    {"alpha", "al"}, {"beta", "be"},
-        {"gamma", "ga"},   {"lambda", "la"},   {"w", "om"},       {"w", "u"},
+        {"gamma", "ga"},   {"lambda", "la"},   {"w", "om"},       {"w", "u"},      {"t", "th"},
     };
     char plain[MAX_NAME];
     move_dot(name, plain);
     for (size_t k = 0; k < sizeof aliases / sizeof *aliases; k++) {
         const size_t n = strlen(aliases[k][0]);
-        if (strncmp(plain, aliases[k][0], n) == 0 && !isalpha((unsigned char)plain[n]) &&
-            i-- == 0) {
+        const bool ends = n == 1 && *plain == 't' ? isdigit((unsigned char)plain[n]) != 0
+                                                  : !isalpha((unsigned char)plain[n]);
+        if (ends && strncmp(plain, aliases[k][0], n) == 0 && i-- == 0) {
             return snprintf(out, size, "%s%s", aliases[k][1], plain + n) < (int)size;
         }
     }

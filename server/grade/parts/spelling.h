@@ -23,7 +23,8 @@ HN_MUST_CHECK hn_status hn_spelling_normalise(hn_strbuf *out, const char *text, 
 /// as in cos th1-th2, which is read as cos(th1)-th2. Other formulas leave the sentence as it is.
 void hn_spelling_remark_bare(const char *formula, char *sentence, size_t size);
 /// The i-th shorter name that a name may stand for: theta1 is th1, omega1 is w1, om1 or u1, w1 is
-/// om1 or u1, q1 is th1; a dot may stand before the index or behind it: thetadot1, theta1_dot.
+/// om1 or u1, q1 and t1 are th1; a dot may stand before the index or behind it: thetadot1,
+/// theta1_dot.
 /// Returns 0 when there is none.
 int hn_spelling_alias(const char *name, int i, char *out, size_t size);
 /// Copies `name` without underscores: theta_1 is theta1. Returns 0 when it has none or is too long.
