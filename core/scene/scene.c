@@ -68,6 +68,10 @@ void hn_scene_free(hn_scene *scene) {
     }
 }
 
+const char *hn_coordinate_unit(const hn_coordinate *c, const char *none) {
+    return c->kind == HN_ANGLE ? "rad" : c->kind == HN_LENGTH ? "m" : none;
+}
+
 const char *hn_scene_start_name(const char *setting) {
     static const char prefix[] = "start.";
     const size_t n = sizeof prefix - 1;

@@ -274,6 +274,8 @@ void hn_scene_free(hn_scene *scene); ///< NULL is legal
 /// Fails: HN_ERR_INPUT (no such point), HN_ERR_MEMORY
 HN_MUST_CHECK hn_status hn_scene_add_pull(hn_scene *scene, int point);
 
+/// "rad", "m", or `none` for a coordinate that is neither an angle nor a length.
+const char *hn_coordinate_unit(const hn_coordinate *c, const char *none);
 int hn_scene_find_coordinate(const hn_scene *scene, const char *name); ///< index by name, or -1
 /// Index of the parameter; -1: there is none of this name.
 int hn_scene_find_param(const hn_scene *scene, const char *name);

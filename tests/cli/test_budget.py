@@ -36,6 +36,18 @@ class Budget(unittest.TestCase):
         self.assertTrue(0 <= failure["value"] < 0.3, failure)
         self.assertEqual(failure["message"], row["reason"])
 
+    def test_a_coordinate_without_a_unit_has_none_in_the_table(self):
+        scene = {"holonom": 1, "name": "bare", "title": "A number that swings", "start": {"positions": {"u": 1}},
+                 "lagrangian": {"coordinates": [{"name": "u", "rate": "v", "unit": "1"}], "kinetic": "v^2/2", "potential": "2*u^2"}}
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "bare.json")
+            with open(path, "w", encoding="utf-8") as f:
+                json.dump(scene, f)
+            text = call("study", path, "budget", "--time", "1", "--methods", METHODS[0]).stdout
+            self.assertIn("  u [1] ", text)
+            found = strict(call("study", path, "budget", "--time", "1", "--methods", METHODS[0], "--json").stdout)
+        self.assertEqual([m["error"]["unit"] for m in found["methods"]], ["1"])
+
     def test_json_adds_up_and_says_what_cannot_be_told(self):
         done = call("study", "fb0", "budget", "--time", "1", "--methods", *METHODS, "--json")
         self.assertEqual(done.returncode, DONE, done.stderr)

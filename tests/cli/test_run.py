@@ -163,11 +163,11 @@ class Run(Command):
         far = "projection@rk4:h=2"
         text = self.assert_exit(call("compare", "four-bar", "--methods", far, RK4, "--time", "1"), DONE)
         self.assertRegex(text, r"(?m)^projection@rk4\S* +WRONG +1.00 ")
-        self.assertRegex(text, r"(?m)^! projection@rk4\S* is wrong: its coordinates are off by up to \d\S* \(angles in rad, lengths divided by the mechanism's length\)$")
+        self.assertRegex(text, r"(?m)^! projection@rk4\S* is wrong: a2 is off by up to 32 rad$")
         self.assertRegex(text, r"(?m)^index1@rk4\S* +right +1.00 ")
         self.assertNotRegex(text, r"index1@rk4\S* is wrong")
         told = call("run", "four-bar", "--method", far, "--time", "1", "--at", "1").stderr.decode()
-        self.assertRegex(told, r"the motion is wrong: up to t = 1 s the coordinates are estimated to be off by up to 19 \(angles in rad, lengths divided by the mechanism's length\), reactions by .*largest( value)?\n")
+        self.assertRegex(told, r"the motion is wrong: up to t = 1 s the coordinates are estimated to be off by up to 19 rad \(a2\), reactions by .*largest( value)?\n")
         near = call("run", "four-bar", "--method", "index1@rk4:h=0.05", "--time", "1", "--at", "1").stderr.decode()
         self.assertNotIn("the motion is wrong", near)
 
@@ -261,7 +261,7 @@ class Run(Command):
         self.assertIn("this is intended: The step of 0.01 s is long on purpose", own)
         # the figure of the note is the one of the run
         self.assertIn("within 10 s the angles are wrong by up to 1.8 rad", own)
-        self.assertIn("index1@rk4:h=0.01 is wrong: its coordinates are off by up to 1.8 (", own)
+        self.assertIn("index1@rk4:h=0.01 is wrong: th1 is off by up to 1.8 rad", own)
         for words in ("--methods", "index1@rk4:h=0.01"), ("--time", "1"), ("--set", "l1=0.45"):
             # methods of somebody else; nothing has gone wrong; another mechanism
             self.assertNotIn("this is intended", call("compare", "four-bar", *words).stdout.decode())
@@ -430,8 +430,23 @@ class Run(Command):
             verdicts.append(done["verdict"]["is"])
             estimate = done["error_estimate"]
             if estimate["q"] is not None:
-                self.assertIn(f"off by up to {estimate['q']:.2g} (angles in rad", done["verdict"]["text"])
+                self.assertEqual((estimate["off"], estimate["unit"]), (estimate["q"], "rad"))
+                self.assertIn(f"off by up to {estimate['q']:.2g} rad ({estimate['coordinate']})", done["verdict"]["text"])
         self.assertEqual(verdicts, ["right", "wrong", "inaccurate", "unknown"])
+        # a mechanism without constraint rows has no reactions that could be off
+        tree = json.loads(call("run", "pendulum", "--time", "1", "--json").stdout)
+        self.assertIsNone(tree["error_estimate"]["reaction"])
+        self.assertEqual(tree["verdict"]["is"], "right")
+        self.assertNotIn("reaction", tree["verdict"]["text"])
+        # a coordinate that is a length is off by metres: those from a tight run at the same times
+        heights, estimates = [], []
+        for method in "index1@rk4:h=0.05", "projection@dop853:rtol=1e-10":
+            done = json.loads(call("run", "scott-russell", "--method", method, "--time", "1", "--every", "0.005", "--json").stdout)
+            heights.append([q[done["coordinates"].index("y")] for q in done["samples"]["q"]])
+            estimates.append(done["error_estimate"])
+        apart = max(abs(a - b) for a, b in zip(*heights))
+        self.assertEqual((estimates[0]["coordinate"], estimates[0]["unit"]), ("y", "m"))
+        self.assertAlmostEqual(estimates[0]["off"] / apart, 1, delta=0.01)
         # no motion is right that an incident calls wrong, however short the part that was compared
         for method, t in ("projection@dop853:h=0.1", "40"), ("projection@dop853:h=0.1", "60"), ("projection@rk4:h=0.13", "60"):
             done = json.loads(call("run", "four-bar", "--method", method, "--time", t, "--at", t, "--json").stdout)

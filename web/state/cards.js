@@ -171,12 +171,12 @@ export function costWords(data, m, shown) {
  * @param {import("./store.js").Data} data @param {number} m
  */
 export function estimateWords(data, m) {
-  const { q, v, reaction, t, reason } = data.latest?.methods[m]?.error_estimate ?? {};
+  const { q, v, reaction, coordinate, off, unit, t, reason } = data.latest?.methods[m]?.error_estimate ?? {};
   if (!Number.isFinite(q ?? NaN)) {
     return reason ? `The error is not estimated: ${reason}.` : "";
   }
   const sizes = [
-    `${scientific(Number(q))} in the coordinates (angles in rad)`,
+    `${unit === "m" ? quantity(Number(off), unit, 2) : `${scientific(Number(off))} ${unit === "rad" ? unit : ""}`.trim()} in ${coordinate}`,
     `${scientific(Number(v))} of the fastest velocity`,
     Number.isFinite(reaction ?? NaN) ? `${scientific(Number(reaction))} of the largest force` : "",
   ];

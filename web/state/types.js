@@ -71,7 +71,7 @@
  *   energy?: number, pull_force?: number[],
  *   error_estimate?: {
  *     q: number | null, v: number | null, reaction: number | null, own: number | null,
- *     t: number | null, reason: string,
+ *     coordinate: string, off: number | null, unit: string, t: number | null, reason: string,
  *   },
  *   step_cpu: {median: number | null, low: number | null, high: number | null, frames: number},
  *   failure?: {code: string, t: number, message: string} | null,

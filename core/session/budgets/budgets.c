@@ -54,7 +54,7 @@ bool hn_budget_holds(const hn_budget_row *row) {
 
 void hn_budget_note(const hn_model *model, const hn_budget_row *row, char out[HN_BUDGET_NOTE]) {
     const hn_coordinate *c = hn_budget_coordinate(model, row);
-    const char *unit = c && c->kind == HN_LENGTH ? "m" : "rad";
+    const char *unit = c ? hn_coordinate_unit(c, "") : "";
     out[0] = 0;
     if (!c || hn_budget_holds(row)) {
         return;

@@ -18,7 +18,7 @@ static void put_error(hn_strbuf *b, const hn_budget_row *row, const hn_coordinat
     // the error, the sum of its parts, and how far the two differ
     hn_json_object(b);
     hn_json_put_string(b, "coordinate", c->name);
-    hn_json_put_string(b, "unit", c->kind == HN_LENGTH ? "m" : "rad");
+    hn_json_put_string(b, "unit", hn_coordinate_unit(c, "1"));
     hn_json_put_number(b, "value", row->budget.error);
     hn_json_put_number(b, "sum", row->budget.sum);
     hn_json_put_number(b, "mismatch", hn_budget_mismatch(row));
@@ -108,7 +108,7 @@ static void put_row(hn_strbuf *b, const hn_budgets *a, const hn_budget_row *row)
     // the error and its parts, in the unit of the coordinate
     hn_strbuf_add(b, ",");
     hn_csv_text(b, c ? c->name : "");
-    hn_strbuf_printf(b, ",%s", !c ? "" : c->kind == HN_LENGTH ? "m" : "rad");
+    hn_strbuf_printf(b, ",%s", c ? hn_coordinate_unit(c, "1") : "");
     put_cell(b, c ? row->budget.error : (double)NAN);
     put_cell(b, c ? row->budget.sum : (double)NAN);
     put_cell(b, c ? hn_budget_mismatch(row) : (double)NAN);

@@ -53,7 +53,7 @@ static void put_row(hn_strbuf *b, const hn_budgets *a, const hn_budget_row *row,
         hn_strbuf_printf(b, "%.4g s", row->budget.t);
     } else {
         hn_html_text(b, c->name);
-        hn_strbuf_printf(b, " [%s]", c->kind == HN_LENGTH ? "m" : "rad");
+        hn_strbuf_printf(b, " [%s]", hn_coordinate_unit(c, "1"));
     }
     hn_strbuf_add(b, "</td>");
 

@@ -35,7 +35,7 @@ static int take_parts(const hn_model *model, const hn_budget_row *row, int energ
         return 0;
     }
     p->n = energy ? (int)HN_ENERGY_COUNT : (int)HN_CAUSE_COUNT;
-    p->unit = energy ? "J" : c->kind == HN_LENGTH ? "m" : "rad";
+    p->unit = energy ? "J" : hn_coordinate_unit(c, "1");
     p->whole = energy ? a->energy : a->error;
     snprintf(p->of, sizeof p->of, energy ? "change of energy" : "error of %.60s",
              energy ? "" : c->name);

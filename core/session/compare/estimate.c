@@ -5,6 +5,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 /// Error of the coordinates over the tolerance that was asked for.
 static double over_tolerance(const hn_estimate *e, const hn_method_spec *spec) {
@@ -22,6 +23,9 @@ void hn_estimate_put_json(hn_strbuf *b, const hn_accuracy *accuracy, const hn_me
     hn_json_put_number(b, "q", e.known ? e.q : none);
     hn_json_put_number(b, "v", e.known ? e.v : none);
     hn_json_put_number(b, "reaction", e.known ? e.reaction : none);
+    hn_json_put_string(b, "coordinate", e.known && e.at ? e.at->name : "");
+    hn_json_put_number(b, "off", e.known && e.at ? e.off : none);
+    hn_json_put_string(b, "unit", e.known && e.at ? hn_coordinate_unit(e.at, "1") : "");
     hn_json_put_number(b, "own", e.known ? e.own : none);
     hn_json_put_number(b, "t", e.known ? e.t : none);
     hn_json_put_number(b, "over_rtol", over_tolerance(&e, spec));
@@ -62,27 +66,51 @@ static const char *verdict_of(const hn_estimate *e, double t_run, const hn_incid
                                                                : "right";
 }
 
+void hn_estimate_write_off(double off, const char *unit, char out[HN_SI_TEXT]) {
+    if (strcmp(unit, "m") == 0) {
+        hn_si_format(off, unit, 2, out);
+    } else if (strcmp(unit, "rad") == 0) {
+        snprintf(out, HN_SI_TEXT, "%.2g rad", off);
+    } else {
+        snprintf(out, HN_SI_TEXT, "%.2g", off);
+    }
+}
+
+/// Writes ", reactions by ..."; nothing for a mechanism that has none.
+static void write_reactions(const hn_estimate *e, char *out, size_t size) {
+    if (isnan(e->reaction)) {
+        snprintf(out, size, "%s", "");
+    } else if (e->unloaded && e->reaction <= HN_ACCURACY_WARN) {
+        snprintf(out, size,
+                 ", reactions by next to nothing, as closing the loops takes next to no force");
+    } else if (e->reaction <= 1) {
+        snprintf(out, size, ", reactions by %.3g %% of their largest", 100 * e->reaction);
+    } else {
+        snprintf(out, size, ", reactions by more than their largest value");
+    }
+}
+
+/// Writes how far the run is off, as far as it was compared. Returns the number of characters.
+static int write_known(const hn_estimate *e, char *out, size_t size) {
+    char off[HN_SI_TEXT], at[80] = "", reactions[96];
+    hn_estimate_write_off(e->at ? e->off : e->q, e->at ? hn_coordinate_unit(e->at, "1") : "1", off);
+    if (e->at) {
+        snprintf(at, sizeof at, " (%.60s)", e->at->name);
+    }
+    write_reactions(e, reactions, sizeof reactions);
+    return snprintf(out, size,
+                    "up to t = %.4g s the coordinates are estimated to be off by up to %s%s%s",
+                    e->t, off, at, reactions);
+}
+
 void hn_estimate_put_verdict(hn_strbuf *b, const hn_accuracy *accuracy,
                              const hn_accuracy_track *track, double t_run, const hn_run *run) {
     const hn_estimate e = hn_accuracy_estimate(accuracy, track, t_run);
     const hn_incident *wrong = find_wrong(run, t_run);
     const hn_run_summary s = hn_run_get_summary(run);
     const bool lost = s.status == HN_ERR_DIVERGED && s.t <= t_run;
-    char text[560], reactions[64] = "more than their largest value";
-    int used = 0;
-    if (e.unloaded && e.reaction <= HN_ACCURACY_WARN) {
-        snprintf(reactions, sizeof reactions,
-                 "next to nothing, as closing the loops takes next to no force");
-    } else if (e.reaction <= 1) {
-        snprintf(reactions, sizeof reactions, "%.3g %% of their largest", 100 * e.reaction);
-    }
-    if (e.known) {
-        used = snprintf(
-            text, sizeof text,
-            "up to t = %.4g s the coordinates are estimated to be off by up to %.2g (angles in "
-            "rad, lengths divided by the mechanism's length), reactions by %s",
-            e.t, e.q, reactions);
-    }
+    char text[560];
+    int used = e.known ? write_known(&e, text, sizeof text) : 0;
     if (!(t_run > 0)) {
         snprintf(text, sizeof text, "nothing was computed beyond the start");
     } else if (!e.known || e.t < WHOLE * t_run) {

@@ -5,19 +5,24 @@
 // comparisons.
 
 #include "base/strbuf.h"
+#include "base/units.h"
 #include "integrators/method/method_spec.h"
 #include "study/run/run.h"
 #include "study/truth/accuracy.h"
 
 #define HN_TOLERANCE_KEPT 10.0 ///< an error of so many times rtol is what a tolerance promises
 
-/// Puts the member "error_estimate": {"q","v","reaction","own","t","over_rtol","reason"}, relative
-/// errors as in study/truth/errors.h, the largest up to the time t [s]; null each where nothing is
-/// known. "over_rtol" is q over the tolerance of a method that has one, null where q is no more
-/// than the estimate's own error. The reason says why it is not known, or ended before t_run; else
-/// it is "".
+/// Puts the member "error_estimate": {"q","v","reaction","coordinate","off","unit","own","t",
+/// "over_rtol","reason"}. q, v, reaction and own are relative errors as in study/truth/errors.h, the
+/// largest up to the time t [s]; null each where nothing is known. "coordinate" is the one that is
+/// off by q, "off" is that in its "unit" ("rad", "m", or "1"). "over_rtol" is q over the tolerance
+/// of a method that has one, null where q is no more than the estimate's own error. The reason says
+/// why it is not known, or ended before t_run; else it is "".
 void hn_estimate_put_json(hn_strbuf *b, const hn_accuracy *accuracy, const hn_method_spec *spec,
                           const hn_accuracy_track *track, double t_run);
+
+/// Writes how far a coordinate is off for people: "19 rad", "3.1 mm". `unit` as in "unit" above.
+void hn_estimate_write_off(double off, const char *unit, char out[HN_SI_TEXT]);
 
 /// Puts the member "verdict": {"is","text"}, what the estimate says of the motion: "wrong" from
 /// HN_ACCURACY_WRONG on, "inaccurate" above HN_ACCURACY_WARN, "right" below, "unknown" where there

@@ -13,11 +13,12 @@ struct hn_accuracy {
     hn_arena *arena;
     hn_run *run[RUNS]; ///< the first NULL: the scene has no such run
     hn_errors *errors;
-    double t_end;               ///< end of the runs [s]
-    int looks;                  ///< comparisons so far: the next one is at looks * t_end / LOOKS
-    hn_scales scales;           ///< largest rate and reaction of the pilot so far
-    hn_sample sample;           ///< of the pilot, at the time reached last
-    double own[HN_ERROR_COUNT]; ///< what it may be off itself, the largest so far, without scales
+    double t_end;                ///< end of the runs [s]
+    int looks;                   ///< comparisons so far: the next one is at looks * t_end / LOOKS
+    hn_scales scales;            ///< largest rate and reaction of the pilot so far
+    hn_sample sample;            ///< of the pilot, at the time reached last
+    double own[HN_ERROR_COUNT];  ///< what it may be off itself, the largest so far, without scales
+    const hn_coordinate *own_at; ///< the one behind own[HN_ERROR_Q]
     double t_out;     ///< where its operations were used up, or it ended [s]; HUGE_VAL: nowhere
     bool lost;        ///< the pilot may be off too much itself
     char reason[200]; ///< why it is not there or ended
@@ -32,6 +33,7 @@ static void begin(hn_accuracy *a) {
     a->lost = false;
     a->scales = (hn_scales){0};
     memset(a->own, 0, sizeof a->own);
+    a->own_at = NULL;
 }
 
 static hn_status create_parts(hn_accuracy *a, const hn_system *sys, const double *q,
@@ -190,6 +192,9 @@ static bool measure_own(hn_accuracy *a, const hn_state_seen *pilot) {
         return false;
     }
 
+    if (!a->own_at || error[HN_ERROR_Q] / HN_ACCURACY_OWN > a->own[HN_ERROR_Q]) {
+        a->own_at = hn_errors_worst_coordinate(a->errors);
+    }
     for (int i = 0; i < HN_ERROR_COUNT; i++) {
         a->own[i] = fmax(a->own[i], error[i] / HN_ACCURACY_OWN);
     }
@@ -244,6 +249,9 @@ void hn_accuracy_see(hn_accuracy *a, const hn_sample *s, hn_accuracy_track *trac
     }
     const hn_state_seen at = seen_of(s), truth = seen_of(&a->sample);
     hn_errors_calc(a->errors, &at, &truth, &unity, error);
+    if (!track->at || error[HN_ERROR_Q] > track->worst[HN_ERROR_Q]) {
+        track->at = hn_errors_worst_coordinate(a->errors);
+    }
     for (int i = 0; i < HN_ERROR_COUNT; i++) {
         track->worst[i] =
             fmax(track->worst[i], error[i]); // a state without multipliers is left out
@@ -276,11 +284,14 @@ hn_estimate hn_accuracy_estimate(const hn_accuracy *a, const hn_accuracy_track *
         return e;
     }
     e.q = relative(a, track->worst, HN_ERROR_Q, 1);
+    e.at = a->own[HN_ERROR_Q] > track->worst[HN_ERROR_Q] ? a->own_at : track->at;
+    e.off = e.at ? hn_errors_in_unit(a->errors, e.at, e.q) : 0;
     e.v = relative(a, track->worst, HN_ERROR_V, a->scales.rate);
     const double least = hn_errors_least_reaction(a->errors, a->scales.rate);
     e.unloaded = a->scales.reaction < least;
     e.reaction =
         relative(a, track->worst, HN_ERROR_REACTION, e.unloaded ? least : a->scales.reaction);
+    e.reaction = hn_errors_has_reactions(a->errors) ? e.reaction : nan("");
     e.own = fmax(a->own[HN_ERROR_Q], HN_ACCURACY_FLOOR);
     if (a->t_out < t_run) {
         memcpy(e.reason, a->reason, sizeof e.reason);

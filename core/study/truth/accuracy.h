@@ -44,13 +44,18 @@ typedef struct hn_accuracy hn_accuracy;
 /// Largest differences of one run so far, not yet divided by scales.
 typedef struct hn_accuracy_track {
     double worst[HN_ERROR_COUNT];
-    double t; ///< last time compared [s]
-    int n;    ///< times compared
+    const hn_coordinate *at; ///< the one behind worst[HN_ERROR_Q]; NULL: none
+    double t;                ///< last time compared [s]
+    int n;                   ///< times compared
 } hn_accuracy_track;
 
 typedef struct hn_estimate {
     bool known;
-    double q, v, reaction; ///< as in errors.h, the largest so far; never below `own`
+    /// As in errors.h, the largest so far; never below `own`. `reaction` is NaN for a mechanism
+    /// without constraint rows.
+    double q, v, reaction;
+    const hn_coordinate *at; ///< which was off by q; NULL: none
+    double off;              ///< q in its unit [rad or m]
     bool unloaded;    ///< reactions are below hn_errors_least_reaction(), and `reaction` is of that
     double own;       ///< of q: error of the pilot itself, at least HN_ACCURACY_FLOOR
     double t;         ///< up to which it holds [s]

@@ -15,6 +15,7 @@ struct hn_errors {
     double *q, *other, *v;        ///< system coordinates
     double *delta, *user;         ///< differences
     double *multipliers, *forces; ///< nc, nv
+    int worst;                    ///< user coordinate of the largest difference of q seen last
 };
 
 static const char *const names[HN_ERROR_COUNT] = {
@@ -79,18 +80,35 @@ void hn_errors_free(hn_errors *e) {
     }
 }
 
-/// Largest entry, lengths over L.
-static double largest(const hn_errors *e, const double *user) {
+/// Largest entry, lengths over L. `at`, if any, gets its index; 0 without entries.
+static double largest(const hn_errors *e, const double *user, int *at) {
     double worst = 0;
+    int where = 0;
     for (int i = 0; i < e->info.n_user; i++) {
         const double size = fabs(user[i]) / (e->is_length[i] ? e->length : 1);
-        worst = size > worst || isnan(size) ? size : worst;
+        if (size > worst || isnan(size)) {
+            worst = size;
+            where = i;
+        }
+    }
+    if (at) {
+        *at = where;
     }
     return worst;
 }
 
+const hn_coordinate *hn_errors_worst_coordinate(const hn_errors *e) {
+    const hn_scene *scene = hn_system_scene(e->sys);
+    const bool none = e->info.n_user == 0;
+    return none ? NULL : &scene->coordinates[hn_system_user_coordinate(e->sys, e->worst)];
+}
+
+double hn_errors_in_unit(const hn_errors *e, const hn_coordinate *coordinate, double error) {
+    return error * (coordinate->kind == HN_LENGTH ? e->length : 1);
+}
+
 double hn_errors_rate(const hn_errors *e, const double *user_v) {
-    return largest(e, user_v);
+    return largest(e, user_v, NULL);
 }
 
 double hn_errors_between(hn_errors *e, const double *q, const double *other) {
@@ -98,7 +116,7 @@ double hn_errors_between(hn_errors *e, const double *q, const double *other) {
     hn_system_from_user(e->sys, other, e->other);
     hn_system_difference(e->sys, e->other, e->q, e->delta);
     hn_system_rates_to_user(e->sys, e->delta, e->user);
-    return largest(e, e->user);
+    return largest(e, e->user, &e->worst);
 }
 
 double hn_errors_between_rates(const hn_errors *e, const double *v, const double *other,
@@ -106,7 +124,7 @@ double hn_errors_between_rates(const hn_errors *e, const double *v, const double
     for (int i = 0; i < e->info.n_user; i++) {
         e->user[i] = v[i] - other[i];
     }
-    return largest(e, e->user) / scales->rate;
+    return largest(e, e->user, NULL) / scales->rate;
 }
 
 double hn_errors_reaction(hn_errors *e, const hn_state_seen *at, const double *lambda) {
@@ -128,6 +146,10 @@ double hn_errors_reaction(hn_errors *e, const hn_state_seen *at, const double *l
         sum += moment * moment;
     }
     return sqrt(sum);
+}
+
+bool hn_errors_has_reactions(const hn_errors *e) {
+    return e->info.nc > 0;
 }
 
 double hn_errors_least_reaction(const hn_errors *e, double rate) {

@@ -63,6 +63,8 @@ void hn_errors_calc(hn_errors *e, const hn_state_seen *state, const hn_state_see
 /// of.
 double hn_errors_rate(const hn_errors *e, const double *user_v);
 double hn_errors_reaction(hn_errors *e, const hn_state_seen *at, const double *lambda);
+/// Has the mechanism constraint rows? Without them there is nothing to be off.
+bool hn_errors_has_reactions(const hn_errors *e);
 /// Returns the least divisor of reactions [N m]: a thousandth of the weights times L, and 1e-7 of
 /// what bodies at the largest rate of the motion, `rate`, would need. Loops that close without a
 /// force have reactions of rounding, and these say nothing. 0 without bodies or rows.
@@ -70,6 +72,11 @@ double hn_errors_least_reaction(const hn_errors *e, double rate);
 /// Largest difference of two states' coordinates as the error of q counts it, or of rates (over
 /// `scales->rate`).
 double hn_errors_between(hn_errors *e, const double *q, const double *other);
+/// The coordinate in which hn_errors_calc() or hn_errors_between() found the largest difference,
+/// the last time; NULL: there is none.
+const hn_coordinate *hn_errors_worst_coordinate(const hn_errors *e);
+/// A difference of that coordinate as the error of q counts it, in its own unit [rad or m].
+double hn_errors_in_unit(const hn_errors *e, const hn_coordinate *coordinate, double error);
 double hn_errors_between_rates(const hn_errors *e, const double *v, const double *other,
                                const hn_scales *scales);
 #endif

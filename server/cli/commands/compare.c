@@ -119,7 +119,8 @@ static void put_estimate(hn_table *t, const cJSON *e) {
     } else {
         hn_table_cell(t, "%.1e", q);
     }
-    hn_table_cell(t, "%.1e", hn_document_number(e, "reaction"));
+    const double reaction = hn_document_number(e, "reaction");
+    hn_table_cell(t, isfinite(reaction) ? "%.1e" : "-", reaction);
 }
 
 static void put_row(hn_table *t, const cJSON *m, const char *unit) {
@@ -161,13 +162,12 @@ static void put_row(hn_table *t, const cJSON *m, const char *unit) {
 
 /// Says what WRONG stands for; i: number of the method in the summary.
 static void put_wrong(hn_strbuf *b, const cJSON *summary, const cJSON *m, int i) {
-    const double q = hn_document_number(hn_document_get(m, "error_estimate"), "q");
+    const cJSON *e = hn_document_get(m, "error_estimate");
     hn_strbuf_printf(b, "! %s is wrong: ", hn_document_text(m, "method"));
-    if (q >= HN_ACCURACY_WRONG) {
-        hn_strbuf_printf(b,
-                         "its coordinates are off by up to %.2g (angles in rad, lengths divided by "
-                         "the mechanism's length)",
-                         q);
+    if (hn_document_number(e, "q") >= HN_ACCURACY_WRONG) {
+        char off[HN_SI_TEXT];
+        hn_estimate_write_off(hn_document_number(e, "off"), hn_document_text(e, "unit"), off);
+        hn_strbuf_printf(b, "%s is off by up to %s", hn_document_text(e, "coordinate"), off);
     } else {
         hn_strbuf_add(b, hn_document_text(hn_document_get(m, "verdict"), "text"));
     }

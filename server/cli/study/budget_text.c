@@ -45,7 +45,7 @@ static const char *name_of(const sheet *s, int part) {
 
 static const char *unit_of(const sheet *s, int i) {
     const hn_coordinate *c = hn_budget_coordinate(hn_budgets_model(s->budgets), s->rows[i]);
-    return s->energy ? "J" : c && c->kind == HN_LENGTH ? "m" : "rad";
+    return s->energy || !c ? "J" : hn_coordinate_unit(c, "1");
 }
 
 /// "a2 [rad]", or the time that a budget of energy goes to.

@@ -13,9 +13,11 @@
 #define TEXT "{\"type\":\"string\"}"
 #define ESTIMATE                                                                                   \
     "{\"type\":\"object\",\"description\":\"relative errors against a pilot run, the "             \
-    "largest up to t; null where not known, reason says why\",\"properties\":{\"q\":" MAYBE_NUMBER \
-    ",\"v\":" MAYBE_NUMBER ",\"reaction\":" MAYBE_NUMBER ",\"own\":" MAYBE_NUMBER                  \
-    ",\"t\":" MAYBE_NUMBER ",\"over_rtol\":" MAYBE_NUMBER ",\"reason\":" TEXT "}}"
+    "largest up to t; null where not known, reason says why. q is that of a coordinate, which is " \
+    "off by so much in its unit\",\"properties\":{\"q\":" MAYBE_NUMBER ",\"coordinate\":" TEXT     \
+    ",\"off\":" MAYBE_NUMBER ",\"unit\":" TEXT ",\"v\":" MAYBE_NUMBER                              \
+    ",\"reaction\":" MAYBE_NUMBER ",\"own\":" MAYBE_NUMBER ",\"t\":" MAYBE_NUMBER                  \
+    ",\"over_rtol\":" MAYBE_NUMBER ",\"reason\":" TEXT "}}"
 #define STATUS_NAME(value, name, text) ",\"" name "\""
 #define STATUS "{\"enum\":[\"ok\"" HN_STATUS_FAILURES(STATUS_NAME) "]}"
 #define FAILURE "{\"oneOf\":[{\"$ref\":\"#/components/schemas/Failure\"},{\"type\":\"null\"}]}"
