@@ -13,11 +13,11 @@
 #define HN_TOLERANCE_KEPT 10.0 ///< an error of so many times rtol is what a tolerance promises
 
 /// Puts the member "error_estimate": {"q","v","reaction","coordinate","off","unit","own","t",
-/// "over_rtol","reason"}. q, v, reaction and own are relative errors as in study/truth/errors.h, the
-/// largest up to the time t [s]; null each where nothing is known. "coordinate" is the one that is
-/// off by q, "off" is that in its "unit" ("rad", "m", or "1"). "over_rtol" is q over the tolerance
-/// of a method that has one, null where q is no more than the estimate's own error. The reason says
-/// why it is not known, or ended before t_run; else it is "".
+/// "over_rtol","reason"}. q, v, reaction and own are relative errors as in study/truth/errors.h,
+/// the largest up to the time t [s]; null each where nothing is known. "coordinate" is the one that
+/// is off by q, "off" is that in its "unit" ("rad", "m", or "1"). "over_rtol" is q over the
+/// tolerance of a method that has one, null where q is no more than the estimate's own error. The
+/// reason says why it is not known, or ended before t_run; else it is "".
 void hn_estimate_put_json(hn_strbuf *b, const hn_accuracy *accuracy, const hn_method_spec *spec,
                           const hn_accuracy_track *track, double t_run);
 
