@@ -47,6 +47,10 @@ void hn_canvas_free(hn_canvas *c) {
     }
 }
 
+void hn_canvas_interrupt(hn_canvas *c, const hn_interrupt *interrupt) {
+    c->interrupt = interrupt;
+}
+
 int hn_canvas_width(const hn_canvas *c) {
     return c->width;
 }

@@ -14,6 +14,7 @@
 // Drawing calls have no result. When memory runs out the canvas keeps that, and painting fails.
 
 #include "base/diag.h"
+#include "base/interrupt.h"
 #include "base/strbuf.h"
 #include "render/look.h"
 
@@ -102,6 +103,10 @@ void hn_canvas_unclip(hn_canvas *c);
 
 // ---- painting: may be called more than once, and from several threads: they take turns ----
 
+/// Painting and writing ask `interrupt` every few hundredths of a second, and fail with
+/// HN_ERR_STOPPED when it ends them. NULL: they go on to their end. It must outlive the canvas.
+void hn_canvas_interrupt(hn_canvas *c, const hn_interrupt *interrupt);
+
 typedef enum hn_renderer {
     HN_RENDERER_AUTO, ///< OSMesa where it is installed
     HN_RENDERER_OSMESA,
@@ -114,7 +119,8 @@ void hn_canvas_choose_renderer(hn_renderer renderer);
 /// Returns the name of the renderer: "OSMesa" or "built-in".
 const char *hn_canvas_renderer(void);
 /// rgb: 3 * width * height bytes, row by row from the top. Fails: HN_ERR_MEMORY; HN_ERR_UNSUPPORTED
-/// when OSMesa is there and cannot give a context; HN_ERR_INTERNAL when GL reports a fault.
+/// when OSMesa is there and cannot give a context; HN_ERR_INTERNAL when GL reports a fault;
+/// HN_ERR_STOPPED.
 HN_MUST_CHECK hn_status hn_canvas_paint(const hn_canvas *c, unsigned char *rgb, hn_diag *diag);
 /// Appends the bytes of a PNG file.
 HN_MUST_CHECK hn_status hn_canvas_png(const hn_canvas *c, hn_strbuf *png, hn_diag *diag);

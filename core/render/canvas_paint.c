@@ -3,13 +3,15 @@
 // missing.
 #include "render/canvas.h"
 
+#include "base/clock.h"
 #include "base/file.h"
+#include "render/canvas_bounds.h"
 #include "render/canvas_record.h"
 #include "render/osmesa.h"
+#include "render/osmesa_turn.h"
 #include "render/png_file.h"
 #include "render/raster.h"
 
-#include <pthread.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,9 +20,8 @@
 // sheet
 enum { TILE = 256, SIDE = HN_CANVAS_SAMPLES * TILE, MAX_STENCIL = 255 };
 
-// OSMesa 22 keeps one list of drawing buffers for the process and changes it without a lock, so two
-// threads must not make contexts at once. The lock guards OSMesa, not state of ours.
-static pthread_mutex_t osmesa_lock = PTHREAD_MUTEX_INITIALIZER;
+/// A thread paints for so long before another may [s].
+static const double SLICE = 0.05;
 
 typedef struct tile {
     int x0, y0, x1, y1; ///< [px], always TILE by TILE: the last ones reach over the sheet's edge
@@ -68,7 +69,7 @@ static bool set_clip(const hn_osmesa *gl, const hn_canvas_shape *s, const tile *
 
 static void draw_shape(const hn_osmesa *gl, const hn_canvas *c, const hn_canvas_shape *s,
                        const tile *t) {
-    if (s->count > 0 && set_clip(gl, s, t)) {
+    if (set_clip(gl, s, t)) {
         set_colour(gl, s->paint.rgb, s->paint.alpha * c->layers[s->layer]);
         gl->glDrawArrays(GL_TRIANGLES, s->first, s->count);
     }
@@ -76,15 +77,18 @@ static void draw_shape(const hn_osmesa *gl, const hn_canvas *c, const hn_canvas_
 
 /// Every sample of a layer takes its colour from one shape, the last that covers it: shapes are
 /// drawn last to first, and the stencil keeps the layer's number where a sample is taken.
-static void draw_layer(const hn_osmesa *gl, const hn_canvas *c, int first, int end, int number,
-                       const tile *t) {
+static void draw_layer(const hn_osmesa *gl, const hn_canvas *c, const hn_bounds *box, int first,
+                       int end, int number, const tile *t) {
     gl->glStencilFunc(GL_NOTEQUAL, number, 0xff);
     for (int i = end - 1; i >= first; i--) {
-        draw_shape(gl, c, &c->shapes[i], t);
+        if (c->shapes[i].count > 0 && !hn_bounds_is_beside(box[i], t->x0, t->y0, TILE)) {
+            draw_shape(gl, c, &c->shapes[i], t);
+        }
     }
 }
 
-static void draw_tile(const hn_osmesa *gl, const hn_canvas *c, const tile *t) {
+static void draw_tile(const hn_osmesa *gl, const hn_canvas *c, const hn_bounds *box,
+                      const tile *t) {
     set_view(gl, t, hn_surface_get(c->theme)->paper);
     int number = 0;
     for (int first = 0, end; first < c->n_shapes; first = end) {
@@ -95,7 +99,7 @@ static void draw_tile(const hn_osmesa *gl, const hn_canvas *c, const tile *t) {
             gl->glClear(GL_STENCIL_BUFFER_BIT);
             number = 1;
         }
-        draw_layer(gl, c, first, end, number, t);
+        draw_layer(gl, c, box, first, end, number, t);
     }
     gl->glFinish();
 }
@@ -135,38 +139,74 @@ static void average(const unsigned char *samples, const tile *t, const hn_canvas
     }
 }
 
-static hn_status paint_tiles(const hn_osmesa *gl, const hn_canvas *c, const unsigned char *samples,
-                             unsigned char *rgb, hn_diag *diag) {
-    set_state(gl, c);
+/// What one painting needs; the context is the thread's current one while it has the turn.
+typedef struct painting {
+    const hn_osmesa *gl;
+    const hn_canvas *c;
+    const hn_bounds *box; ///< of each shape
+    unsigned char *samples, *rgb;
+    OSMesaContext context;
+    double slice_end; ///< the turn passes to others then [s, wall clock]
+    bool has_turn;
+} painting;
+
+static hn_status fail_stopped(hn_diag *diag) {
+    return hn_diag_set(diag, HN_ERR_STOPPED, NULL, NULL, "the picture was not painted to its end");
+}
+
+/// Lets others paint where this thread has painted for a slice of time.
+static hn_status pass_turn(painting *p, hn_diag *diag) {
+    if (hn_clock_wall() < p->slice_end) {
+        return HN_OK;
+    }
+    p->gl->OSMesaMakeCurrent(NULL, NULL, 0, 0, 0);
+    p->has_turn = hn_osmesa_turn_pass(p->c->interrupt);
+    if (!p->has_turn) {
+        return fail_stopped(diag);
+    }
+    p->slice_end = hn_clock_wall() + SLICE;
+    return p->gl->OSMesaMakeCurrent(p->context, p->samples, GL_UNSIGNED_BYTE, SIDE, SIDE)
+               ? HN_OK
+               : hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "no memory to paint a tile");
+}
+
+static hn_status paint_tiles(painting *p, hn_diag *diag) {
+    const hn_canvas *c = p->c;
+    set_state(p->gl, c);
     for (int y = 0; y < c->height; y += TILE) {
         for (int x = 0; x < c->width; x += TILE) {
             const tile t = {x, y, x + TILE, y + TILE};
-            draw_tile(gl, c, &t);
-            const GLenum fault = gl->glGetError();
+            HN_TRY(pass_turn(p, diag));
+            draw_tile(p->gl, c, p->box, &t);
+            const GLenum fault = p->gl->glGetError();
             if (fault != GL_NO_ERROR) {
                 return hn_diag_set(diag, HN_ERR_INTERNAL, NULL, NULL,
                                    "OSMesa reports GL fault 0x%04x while drawing", (unsigned)fault);
             }
-            average(samples, &t, c, rgb);
+            average(p->samples, &t, c, p->rgb);
         }
     }
     return HN_OK;
 }
 
 /// Makes a context that draws into the samples, paints, and lets it go.
-static hn_status paint_with_context(const hn_osmesa *gl, const hn_canvas *c, unsigned char *samples,
-                                    unsigned char *rgb, hn_diag *diag) {
-    OSMesaContext context = gl->OSMesaCreateContextExt(OSMESA_RGBA, 0, 8, 0, NULL);
-    if (context == NULL || !gl->OSMesaMakeCurrent(context, samples, GL_UNSIGNED_BYTE, SIDE, SIDE)) {
-        if (context != NULL) {
-            gl->OSMesaDestroyContext(context);
+static hn_status paint_with_context(painting *p, hn_diag *diag) {
+    const hn_osmesa *gl = p->gl;
+    p->context = gl->OSMesaCreateContextExt(OSMESA_RGBA, 0, 8, 0, NULL);
+    if (p->context == NULL ||
+        !gl->OSMesaMakeCurrent(p->context, p->samples, GL_UNSIGNED_BYTE, SIDE, SIDE)) {
+        if (p->context != NULL) {
+            gl->OSMesaDestroyContext(p->context);
         }
         return hn_diag_set(diag, HN_ERR_UNSUPPORTED, NULL, "install libosmesa6",
                            "OSMesa gives no off-screen drawing context, so no picture can be made");
     }
-    const hn_status status = paint_tiles(gl, c, samples, rgb, diag);
+    const hn_status status = paint_tiles(p, diag);
+
+    // a context goes in its turn only
+    p->has_turn = p->has_turn || hn_osmesa_turn_take(NULL);
     gl->OSMesaMakeCurrent(NULL, NULL, 0, 0, 0);
-    gl->OSMesaDestroyContext(context);
+    gl->OSMesaDestroyContext(p->context);
     return status;
 }
 
@@ -191,12 +231,20 @@ const char *hn_canvas_renderer(void) {
 static hn_status paint_with_osmesa(const hn_osmesa *gl, const hn_canvas *c, unsigned char *rgb,
                                    hn_diag *diag) {
     unsigned char *samples = malloc((size_t)4 * SIDE * SIDE);
-    if (samples == NULL) {
-        return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "no memory to paint a tile");
+    hn_bounds *box = hn_bounds_of_shapes(c);
+    hn_status status =
+        samples && box ? HN_OK
+                       : hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "no memory to paint a tile");
+    if (status == HN_OK && !hn_osmesa_turn_take(c->interrupt)) {
+        status = fail_stopped(diag);
+    } else if (status == HN_OK) {
+        painting p = {.gl = gl, .c = c, .box = box, .samples = samples, .rgb = rgb};
+        p.has_turn = true;
+        p.slice_end = hn_clock_wall() + SLICE;
+        status = paint_with_context(&p, diag);
+        hn_osmesa_turn_give();
     }
-    pthread_mutex_lock(&osmesa_lock);
-    const hn_status status = paint_with_context(gl, c, samples, rgb, diag);
-    pthread_mutex_unlock(&osmesa_lock);
+    free(box);
     free(samples);
     return status;
 }
@@ -218,7 +266,7 @@ hn_status hn_canvas_png(const hn_canvas *c, hn_strbuf *png, hn_diag *diag) {
                            "no memory for a picture of %d by %d pixels", c->width, c->height);
     }
     hn_status status = hn_canvas_paint(c, rgb, diag);
-    HN_THEN(status, hn_png_encode(png, c->width, c->height, rgb, diag));
+    HN_THEN(status, hn_png_encode(png, c->width, c->height, rgb, c->interrupt, diag));
     free(rgb);
     return status;
 }

@@ -26,6 +26,7 @@ struct hn_canvas {
     int width, height;
     hn_theme theme;
     int failed; ///< memory ran out while recording
+    const hn_interrupt *interrupt;
     int clip[4];
 
     float *xy; ///< 2 per vertex [px]

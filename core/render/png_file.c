@@ -26,28 +26,40 @@ _Noreturn static void leave(png_structp png, png_const_charp text) {
     longjmp(*(jmp_buf *)png_get_error_ptr(png), 1);
 }
 
+/// The pixels of a picture, and what ends its writing early.
+typedef struct pixels {
+    int width, height;
+    const unsigned char *rgb;
+    const hn_interrupt *interrupt;
+} pixels;
+
+enum { ROWS = 64 }; // between two questions
+
 /// libpng leaves by longjmp: everything it needs is passed in, so that no local changes between.
-static bool write_png(png_structp png, png_infop info, int width, int height,
-                      const unsigned char *rgb, jmp_buf *back) {
+static bool write_png(png_structp png, png_infop info, const pixels *p, jmp_buf *back) {
     if (setjmp(*back) != 0) {
         return false;
     }
-    png_set_IHDR(png, info, (png_uint_32)width, (png_uint_32)height, 8, PNG_COLOR_TYPE_RGB,
+    png_set_IHDR(png, info, (png_uint_32)p->width, (png_uint_32)p->height, 8, PNG_COLOR_TYPE_RGB,
                  PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     png_set_sRGB(png, info, PNG_sRGB_INTENT_RELATIVE);
 
     // drawings are flat: their rows repeat bytes, and differences between pixels break that up
     png_set_filter(png, 0, PNG_FILTER_NONE);
     png_write_info(png, info);
-    for (int y = 0; y < height; y++) {
-        png_write_row(png, rgb + 3 * (size_t)y * (size_t)width);
+    for (int y = 0; y < p->height; y++) {
+        if (y % ROWS == 0 && hn_interrupt_ask(p->interrupt)) {
+            return false;
+        }
+        png_write_row(png, p->rgb + 3 * (size_t)y * (size_t)p->width);
     }
     png_write_end(png, info);
     return true;
 }
 
 hn_status hn_png_encode(hn_strbuf *out, int width, int height, const unsigned char *rgb,
-                        hn_diag *diag) {
+                        const hn_interrupt *interrupt, hn_diag *diag) {
+    const pixels p = {width, height, rgb, interrupt};
     jmp_buf back;
     const size_t before = out->n;
     png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &back, leave, ignore_warning);
@@ -55,7 +67,7 @@ hn_status hn_png_encode(hn_strbuf *out, int width, int height, const unsigned ch
     int written = 0;
     if (info != NULL) {
         png_set_write_fn(png, out, append_bytes, flush_nothing);
-        written = write_png(png, info, width, height, rgb, &back);
+        written = write_png(png, info, &p, &back);
     }
     png_destroy_write_struct(png != NULL ? &png : NULL, info != NULL ? &info : NULL);
     if (!written || out->failed) {
@@ -63,7 +75,9 @@ hn_status hn_png_encode(hn_strbuf *out, int width, int height, const unsigned ch
             out->n = before;
             out->text[before] = '\0';
         }
-        return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "no memory to write the PNG");
+        return hn_interrupt_ask(interrupt)
+                   ? hn_diag_set(diag, HN_ERR_STOPPED, NULL, NULL, "the PNG was not written")
+                   : hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "no memory to write the PNG");
     }
     return HN_OK;
 }

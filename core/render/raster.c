@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "render/raster.h"
 
+#include "render/canvas_bounds.h"
 #include "render/canvas_record.h"
 
 #include <math.h>
@@ -104,30 +105,6 @@ static void fill_triangle(tile *t, double corner[3][2], const window *w, int num
     }
 }
 
-/// A box around points [px]: least x, y, largest x, y.
-typedef struct bounds {
-    float low[2], high[2];
-} bounds;
-
-static bounds bounds_of(const float *xy, int n) {
-    bounds out = {{xy[0], xy[1]}, {xy[0], xy[1]}};
-    for (int i = 1; i < n; i++) {
-        for (int k = 0; k < 2; k++) {
-            const float x = xy[2 * i + k];
-            out.low[k] = x < out.low[k] ? x : out.low[k];
-            out.high[k] = x > out.high[k] ? x : out.high[k];
-        }
-    }
-    return out;
-}
-
-/// Returns whether a box lies beside the tile, further than a pixel away: what is in it takes no
-/// sample.
-static bool is_beside(const tile *t, bounds box) {
-    return box.high[0] < (float)(t->x0 - 1) || box.low[0] > (float)(t->x0 + TILE + 1) ||
-           box.high[1] < (float)(t->y0 - 1) || box.low[1] > (float)(t->y0 + TILE + 1);
-}
-
 static void draw_shape(tile *t, const hn_canvas *c, const hn_canvas_shape *s, int number) {
     const int n = HN_CANVAS_SAMPLES;
     const window w = {
@@ -136,7 +113,7 @@ static void draw_shape(tile *t, const hn_canvas *c, const hn_canvas_shape *s, in
     const hn_paint paint = {s->paint.rgb, s->paint.alpha * c->layers[s->layer]};
     for (int v = 0; v + 2 < s->count; v += 3) {
         double corner[3][2];
-        if (is_beside(t, bounds_of(c->xy + 2 * (s->first + v), 3))) {
+        if (hn_bounds_is_beside(hn_bounds_of(c->xy + 2 * (s->first + v), 3), t->x0, t->y0, TILE)) {
             continue;
         }
         for (int i = 0; i < 3; i++) {
@@ -149,7 +126,7 @@ static void draw_shape(tile *t, const hn_canvas *c, const hn_canvas_shape *s, in
 }
 
 /// Layers in their order; within a layer the last shape first, so that it lies on top.
-static void draw_tile(tile *t, const hn_canvas *c, const bounds *box) {
+static void draw_tile(tile *t, const hn_canvas *c, const hn_bounds *box) {
     t->paper = hn_surface_get(c->theme)->paper;
     memset(t->touched, 0, sizeof t->touched);
     int number = 0;
@@ -161,7 +138,7 @@ static void draw_tile(tile *t, const hn_canvas *c, const bounds *box) {
             number = 1;
         }
         for (int i = end - 1; i >= first; i--) {
-            if (c->shapes[i].count > 0 && !is_beside(t, box[i])) {
+            if (c->shapes[i].count > 0 && !hn_bounds_is_beside(box[i], t->x0, t->y0, TILE)) {
                 draw_shape(t, c, &c->shapes[i], number);
             }
         }
@@ -197,25 +174,23 @@ static void average(const tile *t, const hn_canvas *c, unsigned char *rgb) {
 
 hn_status hn_raster_paint(const hn_canvas *c, unsigned char *rgb, hn_diag *diag) {
     tile *t = malloc(sizeof *t);
-    bounds *box = malloc((size_t)(c->n_shapes + 1) * sizeof *box);
+    hn_bounds *box = hn_bounds_of_shapes(c);
     if (!t || !box) {
         free(t);
         free(box);
         return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "no memory to paint a tile");
     }
-    for (int i = 0; i < c->n_shapes; i++) {
-        const hn_canvas_shape *s = &c->shapes[i];
-        if (s->count > 0) {
-            box[i] = bounds_of(c->xy + 2 * s->first, s->count);
-        }
-    }
+    bool ends = false;
     for (t->y0 = 0; t->y0 < c->height; t->y0 += TILE) {
-        for (t->x0 = 0; t->x0 < c->width; t->x0 += TILE) {
+        for (t->x0 = 0; t->x0 < c->width && !ends; t->x0 += TILE) {
             draw_tile(t, c, box);
             average(t, c, rgb);
+            ends = hn_interrupt_ask(c->interrupt);
         }
     }
     free(box);
     free(t);
-    return HN_OK;
+    return !ends ? HN_OK
+                 : hn_diag_set(diag, HN_ERR_STOPPED, NULL, NULL,
+                               "the picture was not painted to its end");
 }

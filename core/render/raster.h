@@ -7,6 +7,7 @@
 
 #include "render/canvas.h"
 
-/// rgb: 3 * width * height bytes, row by row from the top. Fails: HN_ERR_MEMORY.
+/// rgb: 3 * width * height bytes, row by row from the top. Fails: HN_ERR_MEMORY,
+/// HN_ERR_STOPPED by the interrupt of the canvas.
 HN_MUST_CHECK hn_status hn_raster_paint(const hn_canvas *c, unsigned char *rgb, hn_diag *diag);
 #endif

@@ -16,7 +16,9 @@ static bool is_nearer_to_another(const hn_sheet *s, const hn_drawing *d, const d
     for (int i = 0; i < d->n_points; i++) {
         double at[2];
         hn_sheet_pixel(s, points + 3 * i, at);
-        if (d->labels[i] && hypot(at[0] - xy[0], at[1] - xy[1]) > s->font &&
+        const double least = fmax(fabs(at[0] - place[0]) - half, fabs(at[1] - place[1]));
+        if (d->labels[i] && least - 0.5 * s->font < own &&
+            hypot(at[0] - xy[0], at[1] - xy[1]) > s->font &&
             hn_label_room_to_line(place, half, s->font, at, at) < own) {
             return true;
         }
@@ -37,10 +39,21 @@ static bool place_label(const hn_sheet *s, const hn_drawing *d, const double *po
         const double angle = 2 * 3.14159265358979324 * (k % PLACES) / PLACES;
         const double off = 0.75 * s->bar + 0.85 * s->font + step * (k / PLACES);
         const double place[2] = {xy[0] + (off + wider) * cos(angle), xy[1] - off * sin(angle)};
+        const double highest = enough - 0.25 * step * (k / PLACES);
+        if (highest <= most + 0.5) {
+            break;
+        }
+        if (!hn_label_is_free(s, placed, place, half)) {
+            continue;
+        }
+
+        // the dearest question last, and only where its answer matters
         const double room = hn_label_room_of_all(s, d, points, placed, place, half);
-        const double worth = fmin(room, enough) - 0.25 * step * (k / PLACES) -
-                             s->font * is_nearer_to_another(s, d, points, xy, half, place);
-        if (worth > most + 0.5 && hn_label_is_free(s, placed, place, half)) {
+        double worth = fmin(room, enough) - 0.25 * step * (k / PLACES);
+        if (worth > most + 0.5) {
+            worth -= s->font * is_nearer_to_another(s, d, points, xy, half, place);
+        }
+        if (worth > most + 0.5) {
             most = worth;
             memcpy(out, place, 2 * sizeof *out);
         }
@@ -85,7 +98,8 @@ static void draw_name(writer *w, const double at[2], const char *text) {
     const hn_surface *surface = hn_surface_get(hn_canvas_theme(w->c));
     const double size = w->s->font, half = 0.5 * hn_canvas_text_width(size, text);
     double xy[2];
-    if (!place_label(w->s, w->d, w->points, at, w->placed, half, xy)) {
+    if (w->placed->n == HN_LABELS_PLACED ||
+        !place_label(w->s, w->d, w->points, at, w->placed, half, xy)) {
         const size_t used = strlen(w->missing);
         snprintf(w->missing + used, sizeof w->missing - used, "%s%s",
                  used ? ", " : "no room for the name ", text);

@@ -2,8 +2,9 @@
 #ifndef HN_RENDER_SNAPSHOT_PLACES_H
 #define HN_RENDER_SNAPSHOT_PLACES_H
 // The texts of a drawing and what they keep off: each other, hatching, arrows, dimension lines and
-// the mechanism. A text that has no free place is not drawn; the legend lists it. Inside render/
-// only.
+// the mechanism. A text that has no free place is not drawn; the legend lists it. At most
+// HN_LABELS_PLACED texts are placed, so that the time they take grows with the mechanism, and not
+// with its square. Inside render/ only.
 
 #include "render/snapshot_sheet.h"
 

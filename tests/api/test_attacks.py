@@ -106,6 +106,48 @@ class NobodyWaitsForAnother(Timed):
             peak = next(int(line.split()[1]) for line in f if line.startswith("VmHWM"))
         self.assertLess(peak, 250000 * driver.SLOW)  # 607 MB without the budget
 
+    def many_points(self, size, n=4000):
+        """A picture of so many pixels a side, of a mechanism with so many points that have names."""
+        with open("lessons/11-cabinet/scenes/ring.json") as f:
+            scene = json.load(f)
+        scene["draw"] = {"points": {"p {i}": {"for": {"i": [1, n]}, "body": "link 1", "at": ["sin(0.7*i)", "cos(1.3*i)"]}}}
+        return json.dumps({"scene": scene, "methods": [RK4], "time": 0.01, "width": size, "height": size})
+
+    def test_names_of_many_points_take_no_time_without_end(self):
+        def check(answer, cpu):
+            self.assertEqual(answer.status, 200, answer.body[:300])
+            self.assertLess(cpu, 10 * driver.SLOW)  # 90 s when each name was held against each point
+
+        server = driver.Server()
+        self.assert_unhindered(server, lambda: server.ask("POST", "/api/v1/snapshots", self.many_points(4096), JSON, timeout=120), check)
+        self.assertEqual(server.stop(), 0)
+
+    def test_a_small_picture_waits_for_no_large_ones(self):
+        """One thread paints at a time: it gives way between tiles."""
+        small = json.dumps({"scene": "four-bar", "methods": [RK4], "time": 0.01, "width": 64, "height": 64})
+        server = driver.Server()
+
+        def attempt():
+            """What a small picture takes beside two large ones, and half of what they take."""
+            start, before = time.monotonic(), server.cpu()
+            with concurrent.futures.ThreadPoolExecutor(2) as pool:
+                large = [pool.submit(server.ask, "POST", "/api/v1/snapshots", self.many_points(4096, 10), JSON, timeout=120) for _ in range(2)]
+                server.is_at_work(before)
+                answer, took = server.timed("POST", "/api/v1/snapshots", small, JSON)
+                self.assertEqual([answer.status] + [f.result().status for f in large], [200] * 3)
+            return took, (time.monotonic() - start) / 2
+
+        self.assert_within(attempt)
+        self.assertEqual(server.stop(), 0)
+
+    def test_painting_counts_against_the_limit(self):
+        for renderer in ("", "built-in"):
+            server = driver.Server("--run-cpu", "0.2", environment={"HOLONOM_RENDERER": renderer})
+            answer = server.ask("POST", "/api/v1/snapshots", self.many_points(4096, 1000), JSON, timeout=120)
+            self.assertEqual(answer.status, 422, renderer)
+            self.assertIn("take more than 0.2 s of computing", answer.json()["detail"])
+            self.assertEqual(server.stop(), 0)
+
     def test_equations_count_against_the_limit(self):
         # between what the scene that a comparison goes on with needs on this machine and what the cheapest of the others does
         ring, small = {"scene": "ring", "parameters": {"n": 60}}, {"scene": "ring", "methods": ["projection@rk4:h=1e-2"]}
@@ -308,6 +350,28 @@ class GoingDown(Timed):
         self.assertEqual(server.stop(), 0)
         thread.join()
         self.assertEqual((answers[0].status, answers[0].json()["type"]), (503, "/api/v1/errors/stopping"))
+
+    def test_while_large_pictures_are_painted(self):
+        """They were painted to their ends: 2 to 3.4 s, and then the process was ended by force, without an answer."""
+        picture = {"scene": "four-bar", "methods": ["index1@rk4:h=1e-2"], "time": 1, "width": 4096, "height": 4096}
+
+        def attempt(renderer):
+            server, answers = driver.Server(environment={"HOLONOM_RENDERER": renderer}), []
+            threads = [threading.Thread(target=lambda: answers.append(server.ask("POST", "/api/v1/snapshots", picture))) for _ in range(3)]
+            before = server.cpu()
+            for t in threads:
+                t.start()
+            server.is_at_work(before, threads)
+            start = time.monotonic()
+            self.assertEqual((server.stop(), server.errors), (0, []))
+            took = time.monotonic() - start
+            for t in threads:
+                t.join()
+            self.assertEqual([a.json()["type"] for a in answers if a.status != 200], ["/api/v1/errors/stopping"] * 3)
+            return took, 1 * driver.SLOW
+
+        for renderer in ("", "built-in"):
+            self.assert_within(lambda: attempt(renderer))
 
     def test_while_pictures_are_drawn_and_references_computed(self):
         picture = {**RING, "methods": ["projection@rk4:h=1e-5"], "time": 1000}

@@ -117,6 +117,9 @@ static hn_status draw(sheet *p, hn_diags *diags) {
     for (int k = 0; k < p->n_canvases && status == HN_OK; k++) {
         const int n = gather(p, moment_of(p, k));
         status = hn_canvas_create(p->width, p->height, r->theme, &p->canvas[k], &diag);
+        if (status == HN_OK) {
+            hn_canvas_interrupt(p->canvas[k], r->interrupt);
+        }
         HN_THEN(status, hn_snapshot_draw(p->canvas[k], &p->drawing, p->poses, n, &p->opts, &diag));
         hn_snapshot_place at = {0};
         HN_THEN(status, hn_snapshot_find_place(&at, p->width, p->height, &p->drawing, p->poses, n,
@@ -165,7 +168,8 @@ static hn_status write_strip(const sheet *p, hn_strbuf *out, hn_diag *diag) {
             memcpy(all + to, one + (size_t)y * row, row);
         }
     }
-    HN_THEN(status, hn_png_encode(out, p->width * across, p->height * down, all, diag));
+    HN_THEN(status, hn_png_encode(out, p->width * across, p->height * down, all,
+                                  p->request->interrupt, diag));
     free(one);
     free(all);
     return status;

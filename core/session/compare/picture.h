@@ -4,6 +4,7 @@
 // Draws a mechanism without a display: the poses that several methods reached at one time, or one
 // given pose.
 
+#include "base/interrupt.h"
 #include "render/look.h"
 #include "session/model/model.h"
 
@@ -49,6 +50,7 @@ typedef struct hn_picture_request {
     double cpu_limit;        ///< computing time allowed [s], then HN_ERR_LIMIT; 0: no limit
     int (*stop)(void *user); ///< asked every few milliseconds; 1: HN_ERR_LIMIT. May be NULL
     void *user;
+    const hn_interrupt *interrupt; ///< ends painting and writing: HN_ERR_STOPPED. May be NULL
     /// receives the name and the note of the first method that ended early; NULL: not asked for
     hn_strbuf *ending;
     /// receives the larger of the width and the height of the mechanism [px]; NULL: not asked for
@@ -61,7 +63,8 @@ typedef struct hn_picture_request {
 /// "methods". The last of several moments is "picture", the others are "before", latest first.
 /// A method that ended early is drawn at its last good state, with the reason in the legend; *ended
 /// (may be NULL) is then its status.
-/// Fails: HN_ERR_INPUT, HN_ERR_LIMIT, HN_ERR_UNSUPPORTED (OSMesa gives no context), HN_ERR_MEMORY.
+/// Fails: HN_ERR_INPUT, HN_ERR_LIMIT, HN_ERR_UNSUPPORTED (OSMesa gives no context), HN_ERR_STOPPED,
+/// HN_ERR_MEMORY.
 HN_MUST_CHECK hn_status hn_model_picture(hn_strbuf *file, hn_strbuf *description,
                                          const hn_model *model, const hn_picture_request *request,
                                          hn_status *ended, hn_diags *diags);

@@ -197,6 +197,22 @@ void hn_handle_equations(hn_request *r) {
     conclude(r, model, status, &b, &diags);
 }
 
+/// Painting has a time of its own, which begins with its first question.
+typedef struct painting_time {
+    hn_request *r;
+    bool has_begun;
+} painting_time;
+
+static bool must_end_painting(void *user) {
+    painting_time *p = user;
+    if (!p->has_begun) {
+        p->has_begun = true;
+        hn_request_add_time(p->r);
+    }
+    const hn_interrupt interrupt = hn_request_interrupt(p->r);
+    return hn_interrupt_ask(&interrupt);
+}
+
 void hn_handle_snapshot(hn_request *r) {
     hn_model *model = load_model(r, 0);
     if (!model) {
@@ -212,6 +228,8 @@ void hn_handle_snapshot(hn_request *r) {
     }
 
     // what is left out is chosen by the picture
+    painting_time time = {.r = r};
+    const hn_interrupt interrupt = {must_end_painting, &time};
     hn_picture_request request = {.methods = methods,
                                   .n_methods = n,
                                   .time = hn_fields_number(r->json, "time", 0),
@@ -222,7 +240,8 @@ void hn_handle_snapshot(hn_request *r) {
                                   .view = hn_fields_text(r->json, "view"),
                                   .cpu_limit = r->context->opts.max_run_cpu,
                                   .stop = hn_request_is_unwanted,
-                                  .user = r};
+                                  .user = r,
+                                  .interrupt = &interrupt};
 
     // drawn, or refused with the reason
     hn_strbuf png;

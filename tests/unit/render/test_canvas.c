@@ -2,6 +2,7 @@
 #include "support/near.h"
 
 #include "render/canvas.h"
+#include "render/png_file.h"
 #include "render/raster.h"
 #include "support/alloc.h"
 
@@ -380,6 +381,80 @@ static void threads_that_paint_at_once_get_the_same_pixels(void **state) {
     hn_canvas_free(c);
 }
 
+/// A sheet that takes longer to paint than a thread has its turn.
+static hn_canvas *create_large(void) {
+    enum { SIDE = 1400 };
+    hn_canvas *c = create(SIDE, SIDE);
+    for (int i = 0; i < 40; i++) {
+        hn_canvas_disc(c, SIDE / 2, SIDE / 2, SIDE / 2 - 15 * i, (hn_paint){0x050607 * i, 0.7});
+    }
+    draw_a_little_of_everything(c);
+    return c;
+}
+
+static void *paint_large_in_thread(void *rgb) {
+    hn_canvas *c = create_large();
+    assert_int_equal(hn_canvas_paint(c, rgb, NULL), HN_OK);
+    hn_canvas_free(c);
+    return NULL;
+}
+
+static void threads_that_take_turns_within_a_picture_get_the_same_pixels(void **state) {
+    (void)state;
+    hn_canvas *c = create_large();
+    picture alone = paint(c);
+    const size_t size = (size_t)3 * (size_t)alone.width * (size_t)alone.height;
+    unsigned char *rgb[3];
+    pthread_t threads[3];
+    for (int i = 0; i < 3; i++) {
+        rgb[i] = malloc(size);
+        assert_non_null(rgb[i]);
+        assert_int_equal(pthread_create(&threads[i], NULL, paint_large_in_thread, rgb[i]), 0);
+    }
+    for (int i = 0; i < 3; i++) {
+        pthread_join(threads[i], NULL);
+        assert_memory_equal(rgb[i], alone.rgb, size);
+        free(rgb[i]);
+    }
+    free(alone.rgb);
+    hn_canvas_free(c);
+}
+
+static bool ends_after(void *left) {
+    return (*(int *)left)-- <= 0;
+}
+
+static void an_interrupt_ends_painting_and_writing(void **state) {
+    (void)state;
+    hn_canvas *c = create_large();
+    picture whole = paint(c);
+    int left = 0;
+    const hn_interrupt interrupt = {ends_after, &left};
+    hn_canvas_interrupt(c, &interrupt);
+    assert_int_equal(hn_canvas_paint(c, whole.rgb, NULL), HN_ERR_STOPPED);
+    left = 3;
+    assert_int_equal(hn_raster_paint(c, whole.rgb, NULL), HN_ERR_STOPPED);
+
+    // a file that was not written to its end is not there
+    hn_strbuf png;
+    hn_strbuf_init(&png);
+    hn_strbuf_add(&png, "before");
+    left = 3;
+    assert_int_equal(hn_png_encode(&png, whole.width, whole.height, whole.rgb, &interrupt, NULL),
+                     HN_ERR_STOPPED);
+    assert_string_equal(png.text, "before");
+    left = 0;
+    assert_int_equal(hn_canvas_png(c, &png, NULL), HN_ERR_STOPPED);
+    assert_string_equal(png.text, "before");
+
+    // whoever was stopped holds nobody up
+    hn_canvas_interrupt(c, NULL);
+    assert_int_equal(hn_canvas_paint(c, whole.rgb, NULL), HN_OK);
+    hn_strbuf_reset(&png);
+    free(whole.rgb);
+    hn_canvas_free(c);
+}
+
 static hn_status draw_and_encode(hn_strbuf *png) {
     hn_canvas *c = NULL;
     hn_status status = hn_canvas_create(220, 100, HN_THEME_LIGHT, &c, NULL);
@@ -431,6 +506,8 @@ int main(void) {
         cmocka_unit_test(sizes_out_of_bounds_are_refused_by_name),
         cmocka_unit_test(the_png_reads_back_to_the_same_pixels_and_twice_the_same_bytes),
         cmocka_unit_test(threads_that_paint_at_once_get_the_same_pixels),
+        cmocka_unit_test(threads_that_take_turns_within_a_picture_get_the_same_pixels),
+        cmocka_unit_test(an_interrupt_ends_painting_and_writing),
         cmocka_unit_test(every_failing_allocation_is_told_and_nothing_leaks),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
