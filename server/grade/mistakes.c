@@ -107,20 +107,24 @@ static void make_row(const place *at, variants *v) {
     }
 }
 
-/// Those entries of other rows whose derivative is the right entry.
-static void make_undifferentiated_row(const place *at, variants *v) {
-    variants all = {.n = 0};
+/// Adds those of `all` whose derivative is the right entry.
+static void add_undifferentiated(const place *at, const variants *all, variants *v) {
     const hn_exercise *p = at->exam->problem;
     const double *right = at->exam->expected[at->row * p->n_columns + at->column];
     const int coordinate = at->exam->symbol[p->n_params + at->column];
-    make_row(at, &all);
-    for (int i = 0; i < all.n; i++) {
+    for (int i = 0; i < all->n; i++) {
         hn_ex slope;
-        hn_diff(at->exam->graph, all.e[i], &coordinate, 1, &slope);
+        hn_diff(at->exam->graph, all->e[i], &coordinate, 1, &slope);
         if (agrees(at, slope, right)) {
-            add(v, all.e[i], all.by[i]);
+            add(v, all->e[i], all->by[i]);
         }
     }
+}
+
+static void make_undifferentiated_row(const place *at, variants *v) {
+    variants all = {.n = 0};
+    make_row(at, &all);
+    add_undifferentiated(at, &all, v);
 }
 
 /// sin for cos and cos for sin: every coordinate x becomes pi/2 - x.
@@ -129,6 +133,12 @@ static void make_swapped(const place *at, variants *v) {
     hn_ex e = replace_names(at, at->reference, p->n_params, p->n_names, acos(-1) / 2, -1);
     add(v, e, "");
     add(v, hn_neg(e), "");
+}
+
+static void make_undifferentiated_swap(const place *at, variants *v) {
+    variants all = {.n = 0};
+    make_swapped(at, &all);
+    add_undifferentiated(at, &all, v);
 }
 
 static void make_column(const place *at, variants *v) {
@@ -208,6 +218,9 @@ static const struct {
      "this is the entry of the other row; a term that was not differentiated looks like that too",
      make_undifferentiated_row},
     {"row", "this is the entry of the other row", make_row},
+    {"swapped",
+     "sine and cosine are exchanged; a term that was not differentiated looks like that too",
+     make_undifferentiated_swap},
     {"swapped", "sine and cosine are exchanged", make_swapped},
     {"degrees", "this looks like degrees; angles are in radians", make_degrees},
     {"length", "a length is missing", make_length},

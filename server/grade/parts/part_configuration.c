@@ -253,7 +253,7 @@ static bool find_branch(const sheet *s, double *asked) {
     return false;
 }
 
-enum { DEGREES, SIGN, HALF_TURN, ABSOLUTE, RELATIVE, SWAPPED, N_SLIPS };
+enum { DEGREES, SIGN, HALF_TURN, ABSOLUTE, INNER, RELATIVE, SWAPPED, N_SLIPS };
 static const struct {
     const char *id, *says;
     double share;
@@ -263,6 +263,7 @@ static const struct {
     {"half-turn", "the link points the other way: half a turn is missing", 0.25},
     {"absolute", "this is the angle from the x axis; this coordinate counts from the link before",
      0.5},
+    {"inner", "this is pi less the angle: it was measured from the other side of the x axis", 0.25},
     {"relative", "this is an angle between two links; this coordinate is another angle", 0.25},
     {"swapped", "this is the value of another coordinate that is asked for", 0.25},
 };
@@ -283,7 +284,12 @@ static double slip_value(const sheet *s, int slip, int k, int other) {
         }
         return among ? s->expected[other] : (double)NAN;
     }
-    const double values[] = {x * 180 / PI, -x, x + PI, s->absolute[i],
+    const bool from_axis = fabs(s->absolute[i] - x) < 1e-9;
+    const double values[] = {x * 180 / PI,
+                             -x,
+                             x + PI,
+                             s->absolute[i],
+                             from_axis ? PI - x : (double)NAN,
                              x - s->expected[is_angle(s, other) ? other : i]};
     return values[slip];
 }

@@ -206,6 +206,20 @@ static void two_mistakes_at_once_are_named(void **state) {
     }
 }
 
+static void a_term_that_was_not_differentiated_is_suspected_in_both_rows(void **state) {
+    static const char *const formulas[] = {"l1*cos(th1)", "l1*sin(th1)", "-l1*cos(th1)"};
+    static const int entries[] = {0, 4, 0};
+    for (int i = 0; i < 3; i++) {
+        hn_verdict v;
+        grade_with(*state, entries[i], formulas[i], &v);
+        const char *says = v.entry[entries[i]].explanation;
+        const bool suspected = strstr(says, "not differentiated looks like that too") != NULL;
+        if (suspected != (i < 2)) {
+            fail_msg("%s: %s", formulas[i], says);
+        }
+    }
+}
+
 static void each_known_mistake_is_named_and_shown_at_a_state(void **state) {
     static const struct {
         int entry;
@@ -541,6 +555,7 @@ int main(void) {
         cmocka_unit_test(the_right_answers_are_shown_to_teachers_alone),
         cmocka_unit_test(a_formula_that_uses_the_closed_loop_is_right_and_told),
         cmocka_unit_test(each_known_mistake_is_named_and_shown_at_a_state),
+        cmocka_unit_test(a_term_that_was_not_differentiated_is_suspected_in_both_rows),
         cmocka_unit_test(two_mistakes_at_once_are_named),
         cmocka_unit_test(the_state_shown_closes_the_loop_and_holds_the_expected_value),
         cmocka_unit_test(right_entries_are_never_accused_whatever_the_seed),

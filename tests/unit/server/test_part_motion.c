@@ -153,6 +153,11 @@ static void a_predicted_configuration_is_compared_with_the_triangles(void **stat
     assert_string_equal(grade(PREDICTED, "a", answer, "a.a2", v)->mistake, "absolute");
     assert_true(v->entry[1].right);
 
+    // the angle inside the quadrilateral, for the rocker alone: the coupler's is no absolute angle
+    snprintf(answer, sizeof answer, "[%.6f, %.6f]", PI - a2, PI - th3);
+    assert_string_equal(grade(PREDICTED, "a", answer, "a.th3", v)->mistake, "inner");
+    assert_string_not_equal(v->entry[0].mistake, "inner");
+
     // a loop that stays open is told, and the picture has both configurations
     const hn_entry_verdict *e = grade(PREDICTED, "a", "[0.1, 0.2]", "a.th3", v);
     assert_string_equal(e->mistake, "other");
