@@ -171,7 +171,8 @@ export function costWords(data, m, shown) {
  * @param {import("./store.js").Data} data @param {number} m
  */
 export function estimateWords(data, m) {
-  const { q, v, reaction, coordinate, off, unit, t, reason } = data.latest?.methods[m]?.error_estimate ?? {};
+  const { q, v, reaction, coordinate, off, unit, t, reason } =
+    data.latest?.methods[m]?.error_estimate ?? {};
   if (!Number.isFinite(q ?? NaN)) {
     return reason ? `The error is not estimated: ${reason}.` : "";
   }
