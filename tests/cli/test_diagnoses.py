@@ -144,6 +144,46 @@ def numbers(folder):
             named(folder, "drift", "d", value, mistake, "", *who)
 
 
+def units_of_numbers(folder):
+    """A wrong unit is named with three digits too; gravity is missing only where it belongs; a small number is not 0."""
+    cases = (
+        ("euler", "c", lambda n: round(1000 * 1000 * math.log(1.1) / (n["T"] * n["om"] ** 2), 1), "milli", "a factor of 1000"),
+        ("euler", "c", lambda n: f"{1000 * math.log(1.1) / (n['T'] * n['om'] ** 2):.3g} s", "milli", "a factor of 1000"),
+        ("scales", "b", lambda n: n["tol"] * 1e-9 / (n["k"] * n["L"]), "power-of-ten", "1e-12"),
+        ("differences", "a", lambda n: (n["c"] * 10.0 ** -n["n"]) ** 2 / 6, "power-of-ten", "1e-12"),
+        ("differences", "a", lambda n: (n["c"] * 10.0 ** (6 - n["n"])) ** 2 / 6 / 9.81, "other", ""),
+        ("refine", "c", lambda n: (n["er"] * 10.0 ** -n["n1"]) ** 2, "error", "the error itself"),
+    )
+    for exercise, part, value, mistake, words in cases:
+        for seed in (1, 2, 7):
+            who = ("--seed", str(seed))
+            n = json.loads(run("problem", exercise, "--json", *who).stdout)["numbers"]
+            named(folder, exercise, part, value(n), mistake, words, *who)
+    lighter = "(m1/2+m2)*l1*sin(th1) + m2/2*l2*sin(th2) + m3/2*l3*sin(th3)"
+    named(folder, "code", "c", lighter, "gravity", "gravity is missing")
+
+
+def wrong_ways(folder):
+    """A formula upside down, cycles for radians, the whole for the difference: of one number each."""
+    cases = (
+        ("steps", "d", lambda n: 2828 * 2 * math.pi / n["om"], "cycles"),
+        ("amplify", "b", lambda n: 1 + n["k"] * n["h"] / 1000, "upside-down"),
+        ("amplify", "c", lambda n: (1 - n["k"] * n["h"] / 1000) / (1 + n["k"] * n["h"] / 1000), "no-half"),
+        ("stiff", "a", lambda n: math.sqrt(n["m"] / (1000 * n["k"])), "upside-down"),
+        ("stiff", "c", lambda n: 2.828 * n["m"] / n["c"], "imaginary-axis"),
+        ("chaos", "b", lambda n: n["tl"] * math.log(1e6 * n["f"] / n["d0"]), "whole"),
+        ("space", "b", lambda n: 3 * (3 * n["b"] - 1) / 2, "per-joint"),
+        ("axes", "b", lambda n: math.sqrt((n["I2"] - n["I1"]) * (n["I3"] - n["I2"]) / (n["I1"] * n["I3"])), "no-speed"),
+        ("differences", "c", lambda n: 1000 * (3e-8 * n["r"]) ** (1 / 3), "smallest-sum"),
+        ("conventions", "b", lambda n: (n["j"] - 1) * n["n"] + n["i"] - 1, "row-from-one"),
+    )
+    for exercise, part, value, mistake in cases:
+        for seed in (1, 2, 7):
+            who = ("--seed", str(seed))
+            n = json.loads(run("problem", exercise, "--json", *who).stdout)["numbers"]
+            named(folder, exercise, part, value(n), mistake, "", *who)
+
+
 def decimal_commas(folder):
     """A list with decimal commas is read where its marks are clear, and refused where they are not."""
     right = [float(e["expected"].split()[0]) for e in graded(folder, "conventions", "a", [1, 2], "--show-expected", "--seed", "2")[1]["entries"] if e["name"].startswith("a.")]
@@ -209,4 +249,4 @@ def follow_ons(folder):
 
 
 if __name__ == "__main__":
-    sys.exit(speak_tap([formulas, first_readers, shapes, bases, numbers, decimal_commas, follow_ons]))
+    sys.exit(speak_tap([formulas, first_readers, shapes, bases, numbers, units_of_numbers, wrong_ways, decimal_commas, follow_ons]))

@@ -11,14 +11,16 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 /// Factors between the answer and the reference that everyone gets wrong; `again`: as a second
 /// mistake beside another.
 static const struct factor_row {
     const char *id, *says, *again;
     double factor, share;
-    int numbers;                    ///< of numbers alone
-    enum { ANY, ANGLES, UNITS } of; ///< numbers in units of angle; numbers that are no counts
+    int numbers; ///< of numbers alone
+    /// Numbers in units of angle; numbers that are no counts; those with gravity in their formula.
+    enum { ANY, ANGLES, UNITS, WEIGHTS } of;
 } FACTORS[] = {
     {"sign", "the sign is wrong", "the sign is wrong as well", -1, 0.5, 0, ANY},
     {"half", "half of the right value: a factor 2 is missing", "a factor 2 is missing as well", 0.5,
@@ -34,11 +36,12 @@ static const struct factor_row {
     {"kilo", "a factor of 1/1000: check the unit", "a factor of 1/1000 as well: check the unit",
      0.001, 0.5, 1, UNITS},
     {"gravity", "the acceleration of gravity is missing",
-     "the acceleration of gravity is missing as well", 1 / 9.81, 0.25, 0, UNITS},
+     "the acceleration of gravity is missing as well", 1 / 9.81, 0.25, 0, WEIGHTS},
 };
 enum { N_FACTORS = sizeof FACTORS / sizeof *FACTORS };
-/// Factors of units that a number without a written unit may be in: cm, their squares, micro, nano.
-static const double UNIT_FACTORS[] = {100, 0.01, 1e4, 1e-4, 1e6, 1e-6, 1e9, 1e-9};
+/// Factors of units that a number without a written unit may be in: cm, their squares, micro, nano,
+/// pico.
+static const double UNIT_FACTORS[] = {100, 0.01, 1e4, 1e-4, 1e6, 1e-6, 1e9, 1e-9, 1e12, 1e-12};
 
 /// Tolerance for a formula with numbers of three digits, relative to its size: what numbers
 /// themselves are allowed.
@@ -83,14 +86,31 @@ static hn_status try_listed(hn_value_search *f) {
     }
 }
 
-static bool applies(const hn_value_sheet *s, int m) {
+/// Returns whether the right answer may have gravity as a factor: as 9.81 in its text, or as a name
+/// of that value.
+static bool has_gravity(const hn_value_sheet *s, int k) {
+    bool found = false;
+    for (int i = 0; i < s->draw->n_names && !found; i++) {
+        found = s->draw->value[0][i] == 9.81 && hn_depends_on(s->draw->graph, s->reference.e[k], i);
+    }
+    char *text = cJSON_PrintUnformatted(cJSON_GetObjectItemCaseSensitive(s->p->node, "answer"));
+    found |= text && strstr(text, "9.81");
+    cJSON_free(text);
+    return found;
+}
+
+static bool applies(const hn_value_search *f, int m) {
+    const hn_value_sheet *s = f->sheet;
+    if (FACTORS[m].of == WEIGHTS && !has_gravity(s, f->entry)) {
+        return false;
+    }
     if (s->symbolic) { // radians are in its names, and a formula has no unit of its own
         return !FACTORS[m].numbers;
     }
     // half a count is another count, not the same one without a factor
-    return FACTORS[m].of == ANGLES  ? s->unit.power[HN_UNIT_ANGLE] != 0
-           : FACTORS[m].of == UNITS ? !hn_value_is_count(s)
-                                    : true;
+    return FACTORS[m].of == ANGLES ? s->unit.power[HN_UNIT_ANGLE] != 0
+           : FACTORS[m].of != ANY  ? !hn_value_is_count(s)
+                                   : true;
 }
 
 /// A listed mistake together with a factor.
@@ -106,7 +126,7 @@ static hn_status try_listed_pairs(hn_value_search *f) {
         f->alone = hn_part_number(fault, "share", 0);
         f->closeness = 1;
         for (int m = 0; m < N_FACTORS; m++) {
-            if (applies(f->sheet, m)) {
+            if (applies(f, m)) {
                 hn_value_search_try(f, wrong.e[f->entry], FACTORS[m].factor,
                                     hn_part_text(fault, "id"), f->alone * FACTORS[m].share,
                                     "%s; and %s", hn_part_text(fault, "says"), FACTORS[m].again);
@@ -149,7 +169,7 @@ static hn_status try_two_listed(hn_value_search *f) {
 static void try_factors(hn_value_search *f) {
     const hn_value_sheet *s = f->sheet;
     for (int i = 0; i < N_FACTORS; i++) {
-        if (applies(s, i)) {
+        if (applies(f, i)) {
             hn_value_search_try(f, s->reference.e[f->entry], FACTORS[i].factor, FACTORS[i].id,
                                 FACTORS[i].share, "%s", FACTORS[i].says);
         }
@@ -168,7 +188,7 @@ static void try_signed_factors(hn_value_search *f) {
     f->closeness = 1;
     for (int i = 1; i < N_FACTORS; i++) {
         f->alone = FACTORS[i].share;
-        if (applies(f->sheet, i)) {
+        if (applies(f, i)) {
             hn_value_search_try(f, f->sheet->reference.e[f->entry], -FACTORS[i].factor,
                                 FACTORS[i].id, FACTORS[i].share * FACTORS[0].share, "%s; and %s",
                                 FACTORS[i].says, FACTORS[0].again);
@@ -304,12 +324,14 @@ static void find_range(const double *x, int n, double *low, double *high) {
     }
 }
 
-/// 0 in every state where the right value is not; rounding is far below 1e-12 of the size.
+/// 0 in every state where the right value is not. Rounding is far below 1e-12 of the size of a
+/// formula; a number may be small because its unit is another one.
 static bool is_zero(const hn_value_sheet *s, int k, const double *given) {
     double low, high, lowest, highest;
     find_range(given, s->draw->n_states, &low, &high);
     find_range(s->reference.x[k], s->draw->n_states, &lowest, &highest);
-    return fmax(fabs(low), fabs(high)) <= 1e-12 * fmax(fabs(lowest), fabs(highest));
+    const double share = s->symbolic ? 1e-12 : 1e-15;
+    return fmax(fabs(low), fabs(high)) <= share * fmax(fabs(lowest), fabs(highest));
 }
 
 /// An answer that is 0, or a formula that is the same in every state where the right one is not: it

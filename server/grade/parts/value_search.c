@@ -26,6 +26,13 @@ static bool is_done(const hn_value_search *f) {
     return (f->n_found == 2 && f->close == 2) || (f->n_found == 1 && !f->result->likely);
 }
 
+/// By how much a number of this size may differ: as finely as a right answer, relative to its size.
+static double allowed_of(const hn_value_search *f, double size) {
+    const hn_value_sheet *s = f->sheet;
+    const double own = fabs(s->reference.x[f->entry][0]);
+    return s->allowed[f->entry] * (own > 0 ? fmax(size, 1e-300) / own : 1);
+}
+
 /// Returns whether the values agree at all states, and how closely: as in hn_value_search.
 static bool agrees(const hn_value_search *f, hn_ex e, double factor, int *close) {
     const hn_value_sheet *s = f->sheet;
@@ -40,10 +47,8 @@ static bool agrees(const hn_value_search *f, hn_ex e, double factor, int *close)
         }
     }
 
-    // a mistake is told as finely as a right answer, relative to its own size
-    const double own = fmax(fabs(s->reference.x[f->entry][0]), 1e-300);
-    const double allowed = s->symbolic ? s->allowed[f->entry] + 1e-6 * size
-                                       : s->allowed[f->entry] * fmax(size, 1e-300) / own;
+    // a mistake is told as finely as a right answer
+    const double allowed = s->symbolic ? s->allowed[f->entry] + 1e-6 * size : allowed_of(f, size);
     *close = (worst <= 0.1 * allowed) + (worst <= 1e-3 * allowed);
     return worst <= allowed;
 }
@@ -79,7 +84,9 @@ static int is_same(const hn_value_search *f, hn_ex a, double a_factor, hn_ex b, 
         }
     }
     // a constant that was typed with six digits is still the constant
-    return n == 0 ? -1 : worst <= f->sheet->allowed[f->entry] + 1e-5 * size;
+    const hn_value_sheet *s = f->sheet;
+    const double allowed = s->symbolic ? s->allowed[f->entry] : allowed_of(f, size);
+    return n == 0 ? -1 : worst <= allowed + 1e-5 * size;
 }
 
 /// Returns what the changed numbers say. A number says nothing: it is the same whatever they are.
