@@ -195,7 +195,10 @@ def four_bar():
 
 def ticks(low, high, log):
     if log:
-        return [10.0**k for k in range(math.ceil(math.log10(low) - 1e-9), math.floor(math.log10(high) + 1e-9) + 1)]
+        tens = range(math.floor(math.log10(low)), math.floor(math.log10(high) + 1e-9) + 1)
+        found = [10.0**k for k in tens if 10.0**k >= low * (1 - 1e-9)]
+        few = len(found) < 3  # too few to read a slope from
+        return [m * 10.0**k for k in tens for m in (1, 2, 5) if low * (1 - 1e-9) <= m * 10.0**k <= high * (1 + 1e-9)] if few else found
     step = 10 ** math.floor(math.log10((high - low) / 4))
     step *= next(m for m in (1, 2, 5, 10) if (high - low) / (m * step) <= 6)
     return [k * step for k in range(math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9) + 1)]
@@ -224,8 +227,10 @@ def plot(lesson, name, title, x_name, y_name, curves, logx=False, logy=False, do
         return height - bottom - (fy(y) - y0) / (y1 - y0) * (height - top - bottom)
 
     parts = []
-    for v in ticks(10**x0 if logx else x0, 10**x1 if logx else x1, logx):
-        parts += [line(px(v), height - bottom, px(v), top, "#e2dfd6", 1), text(px(v), height - bottom + 18, label(v, logx), 13)]
+    columns = ticks(10**x0 if logx else x0, 10**x1 if logx else x1, logx)
+    powers = logx and all(abs(math.log10(v) % 1) < 1e-9 for v in columns)
+    for v in columns:
+        parts += [line(px(v), height - bottom, px(v), top, "#e2dfd6", 1), text(px(v), height - bottom + 18, label(v, powers), 13)]
     rows = ticks(10**y0 if logy else y0, 10**y1 if logy else y1, logy)
     for v in rows[:: max(1, math.ceil(len(rows) / 8))]:
         parts += [line(left, py(v), width - right, py(v), "#e2dfd6", 1), text(left - 8, py(v) + 4, label(v, logy), 13, "end")]
