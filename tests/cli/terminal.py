@@ -19,6 +19,7 @@ import driver  # noqa: E402
 
 PROGRAM = os.path.abspath(os.environ.get("HOLONOM", "build/holonom"))
 ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
+METHODS = ("--methods", "index1@rk4:h=0.02", "baumgarte@rk4:h=0.02", "projection@rk4:h=0.02")
 STATE = tempfile.TemporaryDirectory()  # scores of exercises are kept here and not in the user's own folder
 PATIENCE = 60.0 * driver.SLOW  # [s] a crowded machine; what is waited for comes in a fraction of a second
 END = b"<the program has ended>"
@@ -29,6 +30,11 @@ def once(*words, **environment):
     env = {**os.environ, "LC_ALL": "C.UTF-8", "XDG_STATE_HOME": STATE.name, **environment}
     done = subprocess.run([PROGRAM, "tui", *words], capture_output=True, timeout=600, env=env, stdin=subprocess.DEVNULL)
     return done.returncode, done.stdout.decode(), done.stderr.decode()
+
+
+def message(frame):
+    """The line above the keys."""
+    return frame.rstrip("\n").split("\n")[-2].strip()
 
 
 def notice(frame):

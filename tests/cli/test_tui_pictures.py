@@ -15,10 +15,9 @@ import zlib
 
 sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "api"))
 import driver  # noqa: E402
-from terminal import PATIENCE, ROOT, Terminal  # noqa: E402
+from terminal import METHODS, PATIENCE, ROOT, Terminal  # noqa: E402
 
 CELL = (10, 18)  # [px]; bands of six rows fill cells of 18
-METHODS = ("--methods", "index1@rk4:h=0.02", "baumgarte@rk4:h=0.02", "projection@rk4:h=0.02")
 BRAILLE = rb"\xe2[\xa0-\xa3][\x80-\xbf]"
 GRAPHICS = re.compile(rb"\033_G([^;\033]*)(?:;([^\033]*))?\033\\")
 SIXELS = re.compile(rb"\0337\033\[(\d+);(\d+)H\033P0;1q([^\033]*)\033\\\0338")
