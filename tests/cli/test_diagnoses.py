@@ -79,6 +79,9 @@ FIRST_READERS = (
     ("forecast", "b", "gp/4", "quarter", "order was taken as two"),
     ("forecast", "c", "sqrt(1000/gp)", "no-start", "multiply it"),
     ("baumgarte", "a", "p0+v0*t", "free", "without feedback"),
+    ("drift", "c", "p*(1+al*tb)", "no-decay", "exp(-alpha t)"),
+    ("reduced", "c", "M11+2*M12+M22+M33", "sum", "entries of Phi"),
+    ("transmission", "a", "sqrt(1-((l2**2+l3**2-l1**2-d**2+2*l1*d*cos(th))/(2*l2*l3))**2)", "sine", "its cosine"),
     ("projection", "c", "(x*vy-y*vx)/sqrt(x**2+y**2)", "along-circle", "along the circle"),
 )
 
