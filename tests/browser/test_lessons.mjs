@@ -497,7 +497,10 @@ test("a lesson is put on paper with every picture, seen or not", async (t) => {
         const missing = [...document.querySelectorAll(".lesson-text img")].filter(
           (one) => !(one.complete && one.naturalWidth > 0),
         );
-        globalThis.printed = [empty.length, missing.length];
+        const folded = [...document.querySelectorAll(".lesson-text .exercise")].filter(
+          (one) => !(one.open && one.querySelector(".statement")),
+        );
+        globalThis.printed = [empty.length, missing.length, folded.length];
       };
     },
   });
@@ -515,7 +518,7 @@ test("a lesson is put on paper with every picture, seen or not", async (t) => {
   );
   await page.getByRole("button", { name: "print", exact: true }).click();
   await page.waitForFunction(() => globalThis.printed);
-  assert.deepEqual(await page.evaluate(() => globalThis.printed), [0, 0]);
+  assert.deepEqual(await page.evaluate(() => globalThis.printed), [0, 0, 0]);
 
   // on paper a prediction has its choices, pictures keep their captions, and no frame is in focus
   await page.emulateMedia({ media: "print" });
@@ -529,5 +532,15 @@ test("a lesson is put on paper with every picture, seen or not", async (t) => {
       return [style(".lesson-text").outlineStyle, style(".lesson-text figure").breakInside];
     }),
     ["none", "avoid"],
+  );
+
+  // exercises are whole there, and folded again when that is done
+  const exercises = page.locator(".lesson-text .exercise");
+  assert.ok((await exercises.count()) > 4);
+  assert.equal(await exercises.getByRole("button", { name: "Check" }).first().isVisible(), false);
+  await page.evaluate(() => dispatchEvent(new Event("afterprint")));
+  await page.emulateMedia({ media: "screen" });
+  await soon(async () =>
+    assert.equal(await page.locator(".lesson-text .exercise[open]").count(), 0),
   );
 });

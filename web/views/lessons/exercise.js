@@ -21,6 +21,24 @@ import { h, say } from "../../widgets/dom.js";
  * @typedef {{node: Node, value: () => any}} Field value: undefined where nothing was entered
  */
 
+/** What fills the exercise of each frame, once. @type {WeakMap<Element, () => Promise<void>>} */
+const fillers = new WeakMap();
+
+/**
+ * Opens all exercises of a text, as paper needs them.
+ * @param {Element} text
+ * @returns {{filled: Promise<any>, close: () => void}} close: those that were closed before
+ */
+export function openExercises(text) {
+  /** @type {HTMLDetailsElement[]} */
+  const closed = [...text.querySelectorAll("details.exercise:not([open])")];
+  closed.forEach((one) => (one.open = true));
+  return {
+    filled: Promise.allSettled(closed.map((one) => fillers.get(one)?.())),
+    close: () => closed.forEach((one) => (one.open = false)),
+  };
+}
+
 /** Text with its indices and powers. @param {string} words @returns {(Node | string)[]} */
 const set = (words) => typeset(words).map(({ text, place }) => (place ? h(place, {}, text) : text));
 
@@ -130,28 +148,31 @@ export function createExercise({ id, title: known, about, progress, changed }) {
   const mark = h("span", { class: "about" });
   const details = h(
     "details",
-    { class: "live exercise", ontoggle: open },
+    { class: "live exercise", ontoggle: () => details.open && open() },
     h("summary", {}, title, mark),
     body,
   );
-  let asked = false;
+  /** @type {Promise<void> | null} */
+  let filled = null;
 
   function showMark() {
     const best = progress.solved(id);
     say(mark, best ? `${best.score} of ${counted(best.most, "point")}` : "");
   }
 
-  async function open() {
-    if (!details.open || asked) {
-      return;
-    }
-    asked = true;
+  async function fetchAndFill() {
     try {
       fill(await documents.problem(id));
     } catch (error) {
-      asked = false;
+      filled = null;
       body.replaceChildren(h("p", { class: "hint" }, sentenceOf(error)));
     }
+  }
+
+  /** Fills it the first time, or again where that failed. */
+  function open() {
+    filled ??= fetchAndFill();
+    return filled;
   }
 
   /** @param {any} problem */
@@ -253,5 +274,6 @@ export function createExercise({ id, title: known, about, progress, changed }) {
   }
 
   showMark();
+  fillers.set(details, open);
   return h("div", { class: "live-block" }, ...about, details);
 }

@@ -9,7 +9,7 @@ import { createProgress } from "../../state/progress.js";
 import { lessonOf } from "../../state/shown.js";
 import { h, loadStyle } from "../../widgets/dom.js";
 import { hasMath, make, wordsOf } from "./blocks.js";
-import { createExercise } from "./exercise.js";
+import { createExercise, openExercises } from "./exercise.js";
 import { makeExhibit, makePrediction, makeSlip } from "./live.js";
 
 const KATEX_STYLE = "vendor/katex/katex.min.css";
@@ -91,8 +91,16 @@ export function createLessons(el, store, actions) {
     ]);
   }
 
-  async function putOnPaper() {
+  /** Nothing stays folded or undrawn on paper; what was opened for it is closed again. */
+  async function prepare() {
+    const { filled, close } = openExercises(text);
+    addEventListener("afterprint", close, { once: true });
+    await filled;
     await drawAll();
+  }
+
+  async function putOnPaper() {
+    await prepare();
     print();
   }
 
@@ -251,7 +259,7 @@ export function createLessons(el, store, actions) {
     }
   });
 
-  addEventListener("beforeprint", () => isOpen && drawAll()); // asked for by the browser's own menu
+  addEventListener("beforeprint", () => isOpen && prepare()); // asked for by the browser's own menu
   store.on("view", obey);
   return { open: obey };
 }
