@@ -4,6 +4,7 @@
 import functools
 import json
 import os
+import pty
 import re
 import subprocess
 import sys
@@ -402,15 +403,21 @@ class CommandLine(Command):
             second.communicate(timeout=30 * driver.SLOW)
             first.stop()
 
-    def test_serve_tells_its_address_and_its_keys(self):
-        server = subprocess.Popen([driver.PROGRAM, "serve", "--port", "0"], stdout=subprocess.PIPE)
-        try:
-            self.assertRegex(server.stdout.readline().decode(), r"http://127\.0\.0\.1:\d+/")
-            self.assertIn("Space", server.stdout.readline().decode())
-        finally:
-            server.terminate()
-            server.communicate(timeout=30 * driver.SLOW)
-        self.assertEqual(server.returncode, DONE)
+    def test_serve_tells_its_address_and_to_a_terminal_its_keys(self):
+        """A journal has no keys: 'Ctrl+C here ends it' stood in that of a service."""
+        screen, terminal = pty.openpty()
+        for told, out in ((os.fdopen(screen, "rb"), terminal), (None, subprocess.PIPE)):
+            server = subprocess.Popen([driver.PROGRAM, "serve", "--port", "0"], stdout=out)
+            told = told or server.stdout
+            try:
+                self.assertRegex(told.readline().decode(), r"http://127\.0\.0\.1:\d+/")
+                if out == terminal:
+                    self.assertIn("Ctrl+C here ends it", told.readline().decode())
+            finally:
+                server.terminate()
+                rest = server.communicate(timeout=30 * driver.SLOW)[0]
+            self.assertEqual((server.returncode, rest), (DONE, None if out == terminal else b""))
+        os.close(terminal)
 
 
 if __name__ == "__main__":

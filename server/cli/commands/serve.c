@@ -189,8 +189,10 @@ static void announce(const hn_server *server, const hn_args *args, const hn_http
                hn_server_address(server, i), opts->token ? "?token=" : "",
                opts->token ? opts->token : "");
     }
-    printf(
-        "Space play and pause   arrows step   - = speed   Backspace reset   Ctrl+C here ends it\n");
+    if (isatty(STDOUT_FILENO)) {
+        printf("Space play and pause   arrows step   - = speed   Backspace reset   "
+               "Ctrl+C here ends it\n");
+    }
     if (args->programs) {
         printf(
             "Programs in %s may run, as the method program:NAME; '+ add' on the page lists them. "
