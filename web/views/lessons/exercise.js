@@ -30,8 +30,9 @@ const fillers = new WeakMap();
  * @returns {{filled: Promise<any>, close: () => void}} close: those that were closed before
  */
 export function openExercises(text) {
-  /** @type {HTMLDetailsElement[]} */
-  const closed = [...text.querySelectorAll("details.exercise:not([open])")];
+  /** @type {NodeListOf<HTMLDetailsElement>} */
+  const found = text.querySelectorAll("details.exercise:not([open])");
+  const closed = [...found];
   closed.forEach((one) => (one.open = true));
   return {
     filled: Promise.allSettled(closed.map((one) => fillers.get(one)?.())),
