@@ -92,7 +92,11 @@ static void put_row(const char *scene, const char *method, const hn_estimate *e,
     } else {
         printf("      -");
     }
-    printf("  %.1e%s\n", e->reaction, fmax(e->q, e->reaction) > HN_ACCURACY_WARN ? remark : "");
+    char reaction[16] = "      -"; // a mechanism without constraint rows has none
+    if (isfinite(e->reaction)) {
+        snprintf(reaction, sizeof reaction, "%.1e", e->reaction);
+    }
+    printf("  %s%s\n", reaction, fmax(e->q, e->reaction) > HN_ACCURACY_WARN ? remark : "");
 }
 
 static void do_scene(hn_library *lib, int scene, counter *q) {
