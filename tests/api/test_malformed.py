@@ -267,6 +267,23 @@ class Malformed(driver.ServerCase):
                 self.assertEqual(problem["type"], "/api/v1/errors/bad-request")
                 self.assertIn(word.decode(), problem["detail"])
 
+    def test_nothing_follows_a_head_whose_length_is_not_certain(self):
+        """A proxy may take the rest for the body: it was read as the next request."""
+        post = b"POST /api/v1/inspect HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n"
+        hidden = b"GET /api/v1/hidden HTTP/1.1\r\nHost: localhost\r\n\r\n"
+        chunked = b"\r\n\r\n%x\r\n" % len(hidden) + hidden + b"\r\n0\r\n\r\n"
+        for head, word in ((post + b"Content-Length: 2\r\nContent-Length: 50\r\n\r\n{}" + hidden, "Content-Length is given 2"),
+                           (post + b"Content-Length: 2\r\nContent-Length: 2\r\n\r\n{}" + hidden, "Content-Length is given 2"),
+                           (post + b"Transfer-Encoding : chunked" + chunked, "'Transfer-Encoding ' is not the name of a header"),
+                           (b"GET /healthz HTTP/1.1\r\nHost: localhost\r\nContent-Length\t: 50\r\n\r\n" + hidden, "is not the name of a header"),
+                           (b"GET /healthz HTTP/1.1\r\nHost: localhost\r\nX(): 1\r\n\r\n" + hidden, "'X()' is not the name of a header"),
+                           (post + b"Transfer-Encoding: identity" + chunked, "'identity'")):
+            with self.subTest(head=head):
+                reply = self.server.raw(head)
+                self.assertEqual((reply[:13], reply.count(b"HTTP/1.1 ")), (b"HTTP/1.1 400 ", 1), reply)
+                self.assertIn(b"\r\nConnection: close\r\n", reply)
+                self.assertIn(word, json.loads(reply.partition(b"\r\n\r\n")[2])["detail"])
+
     def test_every_fault_of_a_body_is_told_at_once(self):
         document = self.assert_problem(self.server.ask("POST", "/api/v1/runs", {"scen": 1, "time": "x", "every": -1}), 422)
         self.assertEqual({"/scen", "/time", "/every", "/scene"}, {e["pointer"] for e in document["errors"]})

@@ -5,6 +5,7 @@
 #include "http/request/context.h"
 
 #include <arpa/inet.h>
+#include <stdarg.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdio.h>
@@ -126,40 +127,69 @@ static enum MHD_Result trim_value(void *cls, enum MHD_ValueKind kind, const char
     return MHD_YES;
 }
 
+/// Refuses a request whose head does not say for certain where it ends: what follows on the
+/// connection is not read as a request.
+HN_PRINTF(3, 4)
+static bool refuse_head(hn_request *r, const char *hint, const char *format, ...) {
+    char detail[HN_DIAG_MESSAGE];
+    va_list args;
+    va_start(args, format);
+    vsnprintf(detail, sizeof detail, format, args);
+    va_end(args);
+    hn_reply_problem(r, HN_PROBLEM_BAD_REQUEST, hint, "%s", detail);
+    hn_reply_header_add(r, "Connection", "close");
+    return false;
+}
+
 /// Checks how the length of the body is given: in one way, and in one that is known here. The value
 /// is as the library read it: it does not take "chunked" with a blank behind it.
 static bool check_length(hn_request *r) {
     const char *encoding = hn_request_header(r, "Transfer-Encoding");
     if (encoding && strcasecmp(encoding, "chunked") != 0) {
-        hn_reply_problem(r, HN_PROBLEM_BAD_REQUEST, "send a Content-Length",
-                         "the Transfer-Encoding is '%.40s'; only chunked is accepted", encoding);
-        return false;
+        return refuse_head(r, "send a Content-Length",
+                           "the Transfer-Encoding is '%.40s'; only chunked is accepted", encoding);
     }
     if (encoding && hn_request_header(r, "Content-Length")) {
-        hn_reply_problem(
-            r, HN_PROBLEM_BAD_REQUEST, "send one of them",
+        return refuse_head(
+            r, "send one of them",
             "both Content-Length and Transfer-Encoding are given; only one is allowed");
-        return false;
     }
     return true;
 }
 
+/// Keeps a name that is no token (RFC 9110, section 5.1): a proxy that forgives a blank before the
+/// colon reads a header there that this server does not.
+static enum MHD_Result find_odd_name(void *cls, enum MHD_ValueKind kind, const char *key,
+                                     const char *value) {
+    static const char token[] = "!#$%&'*+-.^_`|~0123456789abcdefghijklmnopqrstuvwxyz"
+                                "ABCDEFGHIJKLMNOPQRSTUVWXYZ";
+    const char **odd = cls;
+    (void)kind;
+    (void)value;
+    *odd = *key && key[strspn(key, token)] == '\0' ? NULL : key;
+    return *odd ? MHD_NO : MHD_YES;
+}
+
 bool hn_guard_headers(hn_request *r) {
     int n[N_ONCE] = {0};
+    const char *odd = NULL;
     if (has_zero_byte(r)) {
-        hn_reply_problem(
-            r, HN_PROBLEM_BAD_REQUEST, NULL,
+        return refuse_head(
+            r, NULL,
             "a header holds a zero byte or continues on a second line; neither is allowed");
-        hn_reply_header_add(r, "Connection", "close"); // what follows is no request
-        return false;
+    }
+    MHD_get_connection_values(r->connection, MHD_HEADER_KIND, find_odd_name, &odd);
+    if (odd) {
+        return refuse_head(r, "no blank stands before the colon of a header",
+                           "'%.40s' is not the name of a header: letters, digits and "
+                           "!#$%%&'*+-.^_`|~ are allowed",
+                           odd);
     }
     MHD_get_connection_values(r->connection, MHD_HEADER_KIND, count_header, n);
     for (int i = 0; i < N_ONCE; i++) {
         if (n[i] > 1) {
-            hn_reply_problem(r, HN_PROBLEM_BAD_REQUEST, NULL,
-                             "the header %s is given %d times; it may be given once", ONCE[i],
-                             n[i]);
-            return false;
+            return refuse_head(r, NULL, "the header %s is given %d times; it may be given once",
+                               ONCE[i], n[i]);
         }
     }
 
