@@ -187,6 +187,23 @@ def wrong_ways(folder):
             named(folder, exercise, part, value(n), mistake, "", *who)
 
 
+def grouped_digits(folder):
+    """Digits in groups of three are one number, which the note says; other groups are refused; shares have units."""
+    n = json.loads(run("problem", "stiff", "--json").stdout)["numbers"]
+    right = f"{n['T'] * 1000 * n['c'] / (2.785 * n['m']):.0f}"
+    for blank in (" ", "\u00a0", "\u2009", "\u202f"):
+        grouped = right[:-3] + blank + right[-3:]
+        _, verdict, entry = graded(folder, "stiff", "d", grouped)
+        expect(f"{grouped!r} is read", entry["points"] == 1 and f"was read as {right}" in verdict["note"], f"{entry} {verdict['note']}")
+    for answer in (right[:-2] + " " + right[-2:], "1 2000", "1. 200"):
+        expect(f"{answer!r} is refused", graded(folder, "stiff", "d", answer)[2]["mistake"] == "unreadable")
+    for exercise, part, unit in (("euler", "a", "ppm"), ("refine", "a", "ppb"), ("scales", "b", "ppt")):
+        shown = graded(folder, exercise, part, "1", "--show-expected")[2]["expected"].split()
+        share = float(shown[0]) * {"ppm": 1e-4, "ppb": 1e-7, "ppt": 1e-10}[unit]
+        for answer in (f"{shown[0]} {unit}", shown[0], f"{share:.6e} %"):
+            expect(f"{exercise} {part}: {answer} is right", graded(folder, exercise, part, answer)[2]["points"] == 1, answer)
+
+
 def decimal_commas(folder):
     """A list with decimal commas is read where its marks are clear, and refused where they are not."""
     right = [float(e["expected"].split()[0]) for e in graded(folder, "conventions", "a", [1, 2], "--show-expected", "--seed", "2")[1]["entries"] if e["name"].startswith("a.")]
@@ -252,4 +269,4 @@ def follow_ons(folder):
 
 
 if __name__ == "__main__":
-    sys.exit(speak_tap([formulas, first_readers, shapes, bases, numbers, units_of_numbers, wrong_ways, decimal_commas, follow_ons]))
+    sys.exit(speak_tap([formulas, first_readers, shapes, bases, numbers, units_of_numbers, wrong_ways, grouped_digits, decimal_commas, follow_ons]))

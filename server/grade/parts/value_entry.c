@@ -54,9 +54,30 @@ static void plain_sign(char *number) {
     }
 }
 
+/// Joins the groups of three digits that blanks part, as in "20 239"; the blanks may be no-break,
+/// thin or narrow ones. Returns whether there were any.
+static bool join_thousands(char *number) {
+    const size_t length = strlen(number);
+    static const char *const BLANKS[] = {" ", "\u00a0", "\u2009", "\u202f"};
+    char *at = number + strspn(number, "+-");
+    size_t digits = strspn(at, "0123456789");
+    at += digits;
+    for (size_t i = 0; i < sizeof BLANKS / sizeof *BLANKS && digits > 0 && digits <= 3;) {
+        const size_t n = strlen(BLANKS[i]);
+        const bool group = strncmp(at, BLANKS[i], n) == 0 && strspn(at + n, "0123456789") == 3;
+        if (group) {
+            memmove(at, at + n, strlen(at + n) + 1);
+            at += 3;
+        }
+        i = group ? 0 : i + 1;
+    }
+    return strlen(number) < length;
+}
+
 /// Copies a number without what students write before it ("= ", "x = ", "≈ "), and with a point
 /// for a decimal comma. A comma that may part thousands (1,234) stays: the number is refused.
-static void plain_number(const char *text, char *out, size_t size) {
+/// Returns whether digits were joined, which the student is told.
+static bool plain_number(const char *text, char *out, size_t size) {
     static const char *const about[] = {"≈", "~", "="};
     const char *equals = strrchr(text, '=');
     const char *at = equals ? equals + 1 : text;
@@ -67,16 +88,18 @@ static void plain_number(const char *text, char *out, size_t size) {
     at += strspn(at, " ");
     snprintf(out, size, "%s", at);
     plain_sign(out);
+    const bool joined = join_thousands(out);
 
     // one comma between digits, and no point
     char *comma = strchr(out, ',');
     if (!comma || comma == out || strpbrk(comma + 1, ",") || strchr(out, '.')) {
-        return;
+        return joined;
     }
     const size_t before = strspn(out, "+-0123456789"), after = strspn(comma + 1, "0123456789");
     const bool whole = out + before == comma && after > 0;
     const bool thousands = after == 3 && strspn(out, "+-0") < before;
     *comma = whole && !thousands ? '.' : ',';
+    return joined;
 }
 
 /// 1 when a formula that should be a number has names in it.
@@ -222,8 +245,9 @@ static int read_text(hn_value_sheet *s, const char *text, hn_ex *e, hn_unit *uni
     // a number with its unit, as it stands or in the parser's own spelling; or a formula
     char number[MAX_CHARS];
     const char *own = text;
+    bool joined = false;
     if (!s->symbolic && strlen(text) < MAX_CHARS) {
-        plain_number(text, number, sizeof number);
+        joined = plain_number(text, number, sizeof number);
         own = number;
         status = read_quantity(s, own, e, unit, &diag);
     }
@@ -237,7 +261,8 @@ static int read_text(hn_value_sheet *s, const char *text, hn_ex *e, hn_unit *uni
         HN_THEN(status, read_quantity(s, hn_strbuf_text(&plain), e, unit, &diag));
     }
     const char *read = plain.n > 0 ? hn_strbuf_text(&plain) : own;
-    if (status == HN_OK && !s->symbolic && strchr(text, ',') && strcmp(read, text) != 0) {
+    const bool changed = !s->symbolic && (joined || strchr(text, ',')) && strcmp(read, text) != 0;
+    if (status == HN_OK && changed) {
         snprintf(r->read_as, sizeof r->read_as, "%.*s", HN_PART_READ_AS - 1, read);
     }
     if (status != HN_OK && s->symbolic) {
