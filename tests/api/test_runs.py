@@ -97,6 +97,13 @@ class Runs(unittest.TestCase):
         samples = document["samples"]
         self.assertEqual(pages, [list(row) for row in zip(samples["t"][::3], samples["energy"][::3])])
 
+    def test_the_form_that_is_most_welcome_is_sent(self):
+        """The first that was not refused was sent, JSON, however little it was wanted."""
+        address = self.ask(RUN).json()["links"]["samples"]
+        for accept, form in (("text/csv;q=0.9, application/json;q=0.1", "text/csv"), ("text/csv, */*;q=0.5", "text/csv"), ("*/*", "application/json"),
+                             ("application/json;q=0.2, application/x-ndjson;q=0.3", "application/x-ndjson"), ("text/csv, application/json", "application/json")):
+            self.assertEqual(self.server.ask("GET", address, headers={"Accept": accept}).type, form, accept)
+
     def test_faults_of_a_query_are_told(self):
         address = self.ask(RUN).json()["links"]["samples"]
         for query, status, word in (("?stride=0", 422, "stride"), ("?fields=t,qq", 422, "did you mean 'q'"), ("?fields=", 422, "columns: t, "),

@@ -238,33 +238,52 @@ static bool range_covers(const char *range, size_t n, const char *media_type) {
     return strlen(media_type) == n && strncasecmp(range, media_type, n) == 0;
 }
 
-/// 1 when the parameters of a range say q=0.
-static bool is_refused(const char *params, size_t n) {
-    char copy[64];
-    snprintf(copy, sizeof copy, "%.*s", (int)(n < 63 ? n : 63), params);
-    const char *q = strstr(copy, "q=");
-    return q && strspn(q + 2, "0.") > 0 && !strpbrk(q + 2, "123456789");
+/// The weight that the parameters of a range give it (RFC 9110, section 12.4.2), in thousandths;
+/// one that cannot be read is that of a range without any.
+static int read_weight(const char *params, size_t n) {
+    enum { WHOLE = 1000 };
+    const char *at = params, *const end = params + n;
+    while (at < end && strncasecmp(at, "q=", 2) != 0) {
+        at += strcspn(at, ";,");
+        at += at < end;
+        at += at < end ? strspn(at, " \t") : 0;
+    }
+    if (end - at < 3 || (at[2] != '0' && at[2] != '1')) {
+        return WHOLE;
+    }
+    int weight = WHOLE * (at[2] - '0'), place = WHOLE / 10;
+    for (at += 3 + (at[3] == '.'); at < end && *at >= '0' && *at <= '9' && place > 0; at++) {
+        weight += place * (*at - '0');
+        place /= 10;
+    }
+    return weight < WHOLE ? weight : WHOLE;
 }
 
-int hn_accepts(const char *accept, const char *media_type) {
-    int allowed = 0;
+/// How closely a range names a type: 0 */*, 1 application/*, 2 the type itself.
+static int closeness(const char *range, size_t n) {
+    return range[0] == '*' ? 0 : n > 2 && memcmp(range + n - 2, "/*", 2) == 0 ? 1 : 2;
+}
+
+int hn_accept_weight(const char *accept, const char *media_type) {
+    int weight = 0, closest = -1;
     if (!accept) {
         return 1;
     }
     while (*accept) {
         accept += strspn(accept, " \t,");
-        size_t whole = strcspn(accept, ","), range = strcspn(accept, " \t;,");
-        if (range > 0 && range_covers(accept, range, media_type)) {
-            int exact = strlen(media_type) == range && accept[0] != '*';
-            int refused = is_refused(accept + range, whole - range);
-            if (exact) {
-                return !refused;
-            }
-            allowed |= !refused;
+        const size_t whole = strcspn(accept, ","), range = strcspn(accept, " \t;,");
+        if (range > 0 && range_covers(accept, range, media_type) &&
+            closeness(accept, range) > closest) {
+            closest = closeness(accept, range);
+            weight = read_weight(accept + range, whole - range);
         }
         accept += whole;
     }
-    return allowed;
+    return weight;
+}
+
+int hn_accepts(const char *accept, const char *media_type) {
+    return hn_accept_weight(accept, media_type) > 0;
 }
 
 int hn_guard_accept(hn_request *r) {

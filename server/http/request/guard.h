@@ -9,6 +9,9 @@
 
 #include <stdbool.h>
 
+/// Returns how welcome `media_type` is to an Accept header, in thousandths: 0 where it is refused,
+/// the same for all types where there is no header (NULL). The closest range decides.
+int hn_accept_weight(const char *accept, const char *media_type);
 /// 1 when an Accept header (NULL: none) lets `media_type` through.
 int hn_accepts(const char *accept, const char *media_type);
 /// 1 for application/json in UTF-8, with or without parameters.

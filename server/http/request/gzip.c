@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "http/request/gzip.h"
 
+#include "http/request/guard.h"
+
 #include <stdbool.h>
 #include <string.h>
 #include <zlib.h>
@@ -13,13 +15,7 @@ enum {
 
 int hn_gzip_accepted(const hn_request *r) {
     const char *accept = hn_request_header(r, "Accept-Encoding");
-    const char *gzip = accept ? strstr(accept, "gzip") : NULL;
-    if (!gzip) {
-        return 0;
-    }
-    // gzip;q=0 refuses it
-    const char *q = gzip + 4 + strspn(gzip + 4, " ;");
-    return strncmp(q, "q=0", 3) != 0 || strncmp(q, "q=0.", 4) == 0;
+    return accept && hn_accepts(accept, "gzip");
 }
 
 bool hn_gzip_is_worth(const char *media_type, size_t n) {

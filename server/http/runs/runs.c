@@ -253,8 +253,10 @@ static bool read_samples_request(hn_request *r, hn_samples_request *q) {
     q->stride = (long long)stride;
     q->cursor = (long long)cursor;
     q->limit = (long long)limit;
-    while (q->form < HN_SAMPLES_CSV && !hn_accepts(accept, types[q->form])) {
-        q->form++;
+    for (int form = q->form; form <= HN_SAMPLES_CSV; form++) {
+        if (hn_accept_weight(accept, types[form]) > hn_accept_weight(accept, types[q->form])) {
+            q->form = form;
+        }
     }
     return true;
 }

@@ -54,11 +54,37 @@ static void accept_headers_are_read_as_http_has_them(void **state) {
         {"*/*, application/json;q=0", 0},
         {"text/html, */*;q=0.1", 1},
         {" text/html ,application/json ; q=0.5 ", 1},
+        {"application/json;level=1;q=0", 0},
+        {"application/json;Q=0.000", 0},
+        {"application/json;q=maybe", 1},
+        {"application/*;q=0, */*", 0},
     };
     (void)state;
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         assert_int_equal(hn_accepts(rows[i].accept, "application/json"), rows[i].json);
     }
+}
+
+static void the_weight_of_a_type_is_that_of_the_closest_range(void **state) {
+    static const struct {
+        const char *accept;
+        int weight;
+    } rows[] = {
+        {"application/json", 1000},
+        {"application/json;q=1.000", 1000},
+        {"application/json;q=0.25", 250},
+        {"application/json;q=0.9999", 999},
+        {"application/json ; charset=utf-8 ; q=0.001", 1},
+        {"*/*;q=0.9, application/*;q=0.5, application/json;q=0.1", 100},
+        {"application/json;q=0.1, */*;q=0.9", 100},
+        {"*/*;q=0.3, application/*;q=0.5", 500},
+        {"text/csv;q=0.7", 0},
+    };
+    (void)state;
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        assert_int_equal(hn_accept_weight(rows[i].accept, "application/json"), rows[i].weight);
+    }
+    assert_int_equal(hn_accept_weight(NULL, "text/csv"), hn_accept_weight(NULL, "image/png"));
 }
 
 static void json_types_may_have_parameters(void **state) {
@@ -79,6 +105,7 @@ int main(void) {
         cmocka_unit_test(loopback_names_are_ours_and_names_that_look_alike_are_not),
         cmocka_unit_test(bound_to_every_interface_addresses_are_ours_and_names_are_not),
         cmocka_unit_test(accept_headers_are_read_as_http_has_them),
+        cmocka_unit_test(the_weight_of_a_type_is_that_of_the_closest_range),
         cmocka_unit_test(json_types_may_have_parameters),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
