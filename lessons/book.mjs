@@ -17,7 +17,7 @@ const plain = (text) => text.replace(/&/g, "&amp;").replace(/</g, "&lt;").replac
 const faults = [];
 const embedded = (path, type) => `data:${type};base64,${readFileSync(path).toString("base64")}`;
 let lesson, figures, answers;
-/** More pictures than this stand in four columns, without their legends; fewer one below the other. */
+/** More pictures than this stand in five columns, without their legends; fewer one below the other. */
 const GALLERY = 4;
 /** Of all lessons, for the end of the book. */
 const seen = [];
@@ -184,7 +184,7 @@ sub, sup { line-height: 0; font-size: .75em; }
 .exercise svg text { font: 13px "DejaVu Sans", sans-serif; } .exercise svg path { fill: none; stroke: #1a1a1a; } .exercise svg .grid { opacity: .25; } .exercise svg .curve { stroke-width: 2; }
 .exercise li { margin: .25em 0; } .asked { break-inside: avoid; break-after: avoid; } .form { break-inside: avoid; } .plot { break-inside: avoid; break-before: avoid; } .kept { white-space: nowrap; } .answers { font-size: 9.5pt; margin: .3em 0; } .answers p { display: inline; } .answers p + p { display: block; margin: .4em 0; }
 p:has(+ .pictures), p:has(+ p > .katex-display) { break-after: avoid; } h3 + ul { break-inside: avoid; }
-.gallery { display: grid; grid-template-columns: 1fr 1fr 1fr 1fr; gap: 0 .8em; } .gallery figure { margin: .4em 0; }
+.gallery { display: grid; grid-template-columns: repeat(5, 1fr); gap: 0 .8em; } .gallery figure { margin: .4em 0; }
 .gallery figure img { width: 100%; max-width: none; aspect-ratio: 1.1; object-fit: cover; object-position: left; }
 .contents > li { margin: .45em 0; } .contents div { font-size: 9pt; color: #444; }
 .katex { font-size: 1.08em; } .katex-display { margin: .7em 0; }
