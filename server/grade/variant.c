@@ -288,7 +288,7 @@ static void summarise(hn_verdict *v) {
     if (v->n_right == v->n_entries) {
         snprintf(v->summary, sizeof v->summary, "all %d answers are right", v->n_entries);
     } else {
-        snprintf(v->summary, sizeof v->summary, "%d of %d answers are right; look at %s first",
+        snprintf(v->summary, sizeof v->summary, "%d of %d answers are right; look first at '%s'",
                  v->n_right, v->n_entries, first);
     }
     if (v->n_unreadable) {

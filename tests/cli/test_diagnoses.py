@@ -162,6 +162,8 @@ def units_of_numbers(folder):
             who = ("--seed", str(seed))
             n = json.loads(run("problem", exercise, "--json", *who).stdout)["numbers"]
             named(folder, exercise, part, value(n), mistake, words, *who)
+    summary = graded(folder, "steps", "a", 1)[1]["summary"]
+    expect("the summary puts the name of a part in quotes", "; look first at 'a'" in summary, summary)
     lighter = "(m1/2+m2)*l1*sin(th1) + m2/2*l2*sin(th2) + m3/2*l3*sin(th3)"
     named(folder, "code", "c", lighter, "gravity", "gravity is missing")
 
