@@ -135,10 +135,6 @@ void hn_singularity_reset(hn_singularity *r) {
     }
 }
 
-static double entry(const hn_singularity *r, int k) {
-    return r->J[k];
-}
-
 /// D, and R as the reciprocal of the largest length that each row has had.
 static void scale(hn_singularity *r) {
     for (int j = 0; j < r->nv; j++) {
@@ -151,7 +147,7 @@ static void scale(hn_singularity *r) {
     }
     memset(r->y, 0, (size_t)r->nc * sizeof *r->y);
     for (int k = 0; k < r->n_J; k++) {
-        const double e = entry(r, k) * r->d[r->J_col[k]];
+        const double e = r->J[k] * r->d[r->J_col[k]];
         r->y[r->J_row[k]] += e * e;
     }
     for (int i = 0; i < r->nc; i++) {
@@ -173,12 +169,12 @@ static double sweep_top(hn_singularity *r) {
     memset(r->x, 0, (size_t)r->nv * sizeof *r->x);
     for (int k = 0; k < r->n_J; k++) {
         const int i = r->J_row[k], j = r->J_col[k];
-        r->x[j] += entry(r, k) * r->r[i] * r->d[j] * r->top[i];
+        r->x[j] += r->J[k] * r->r[i] * r->d[j] * r->top[i];
     }
     memset(r->top, 0, (size_t)r->nc * sizeof *r->top);
     for (int k = 0; k < r->n_J; k++) {
         const int i = r->J_row[k], j = r->J_col[k];
-        r->top[i] += entry(r, k) * r->r[i] * r->d[j] * r->x[j];
+        r->top[i] += r->J[k] * r->r[i] * r->d[j] * r->x[j];
     }
     return sqrt(normalise(r->nc, r->top));
 }
@@ -200,7 +196,7 @@ static void fill_qr(hn_singularity *r) {
     memset(r->qr.a, 0, (size_t)r->nv * (size_t)r->nc * sizeof *r->qr.a);
     for (int k = 0; k < r->n_J; k++) {
         const int i = r->J_row[k], j = r->J_col[k];
-        r->qr.a[(size_t)i * (size_t)r->nv + (size_t)j] = entry(r, k) * r->r[i] * r->d[j];
+        r->qr.a[(size_t)i * (size_t)r->nv + (size_t)j] = r->J[k] * r->r[i] * r->d[j];
     }
 }
 
@@ -389,19 +385,21 @@ static void keep(hn_singularity *r, int back) {
     }
 }
 
-double hn_singularity_probe(hn_singularity *r, double t, const double *q) {
-    hn_singularity_info info = {0};
+bool hn_singularity_probe_both(hn_singularity *r, double t, const double *q,
+                               hn_singularity_info *info) {
     if (r->nc == 0 || r->wait > 0 || r->first) {
-        return HUGE_VAL;
+        return false;
     }
     const int rank = r->start_rank;
     keep(r, 0);
     hn_eval_run(r->rows, t, q, r->no_speed);
     scale(r);
-    (void)look(r, t, q, PROBE_SWEEPS, &info);
+    (void)look(r, t, q, PROBE_SWEEPS, info);
     keep(r, 1);
     r->start_rank = rank;
-    return info.sigma_min;
+    info->sigma_max = fmax(r->strongest, info->sigma_max);
+    info->ratio = info->sigma_max > 0 ? info->sigma_min / info->sigma_max : 0;
+    return true;
 }
 
 const double *hn_singularity_scale(const hn_singularity *r) {

@@ -30,6 +30,8 @@
 #include "dynamics/analyse/pilot.h"
 #include "dynamics/compile/system.h"
 
+#include <math.h>
+
 typedef enum hn_branches {
     HN_BRANCHES_UNKNOWN, ///< more than one row is lost, or time enters the rows
     HN_BRANCHES_CROSS,
@@ -68,9 +70,17 @@ void hn_singularity_reset(hn_singularity *r);
 /// Checks a state; times should rise. Allocates nothing.
 void hn_singularity_check(hn_singularity *r, double t, const double *q, const double *v,
                           hn_singularity_info *info);
-/// sigma_min at a pose; the record of the checks stays as it is. HUGE_VAL before the first check,
-/// and where a check costs so much that not every state gets one. Allocates nothing.
-double hn_singularity_probe(hn_singularity *r, double t, const double *q);
+/// Finds the singular values at a pose: sigma_min, the largest sigma_max so far with this one
+/// included, and their ratio. The record of the checks stays as it is. Returns false, and leaves
+/// `info` alone, before the first check, and where a check costs so much that not every state gets
+/// one. Allocates nothing.
+bool hn_singularity_probe_both(hn_singularity *r, double t, const double *q,
+                               hn_singularity_info *info);
+/// sigma_min alone; HUGE_VAL where there is none.
+static inline double hn_singularity_probe(hn_singularity *r, double t, const double *q) {
+    hn_singularity_info info = {0};
+    return hn_singularity_probe_both(r, t, q, &info) ? info.sigma_min : HUGE_VAL;
+}
 /// Returns whether some of the rows that are dependent at this pose become independent after a
 /// small displacement along velocities that J allows. Dense, for poses that are reported; after
 /// the first check. Allocates nothing.

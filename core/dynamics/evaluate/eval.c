@@ -2,6 +2,7 @@
 #include "dynamics/evaluate/eval.h"
 
 #include "dynamics/evaluate/inputs.h"
+#include "expr/construct.h"
 
 #include <stdbool.h>
 #include <string.h>
@@ -31,6 +32,7 @@ typedef struct builder {
     hn_eval *e;
     hn_ex *outputs;
     int cap;
+    hn_ex *made; ///< expressions that the system does not keep: energies, or rates of the rows
 } builder;
 
 static void put(builder *b, double *place, int output, hn_ex ex) {
@@ -71,10 +73,25 @@ typedef struct term_source {
     int rows, cols, symmetric;
 } term_source;
 
-static term_source source_of(const hn_system *sys, int term, hn_ex energy[2]) {
-    energy[0] = sys->kinetic;
-    energy[1] = sys->potential;
+/// Fills `made` (nc, at least 2) with what the term is made of, where the system does not keep it.
+static void make_term(const hn_system *sys, int term, hn_ex *made) {
+    if (1 << term == HN_TERM_ENERGY) {
+        made[0] = sys->kinetic;
+        made[1] = sys->potential;
+    }
+    if (1 << term == HN_TERM_RATES) {
+        for (int i = 0; i < sys->nc; i++) {
+            made[i] = sys->phi_t[i];
+        }
+        for (int k = 0; k < sys->J.n; k++) {
+            const hn_entry *e = &sys->J.at[k];
+            const hn_ex part = hn_mul(sys->g, e->e, sys->v[e->col]);
+            made[e->row] = hn_add(sys->g, made[e->row], part);
+        }
+    }
+}
 
+static term_source source_of(const hn_system *sys, int term, const hn_ex *made) {
     // clang-format off
     switch ((hn_term)(1 << term)) {
     case HN_TERM_M:      return (term_source){&sys->M, NULL, sys->nv, sys->nv, 1};
@@ -83,8 +100,9 @@ static term_source source_of(const hn_system *sys, int term, hn_ex energy[2]) {
     case HN_TERM_PHI_T:  return (term_source){NULL, sys->phi_t, sys->nc, 1, 0};
     case HN_TERM_J:      return (term_source){&sys->J, NULL, sys->nc, sys->nv, 0};
     case HN_TERM_GAMMA:  return (term_source){NULL, sys->gamma, sys->nc, 1, 0};
-    case HN_TERM_ENERGY: return (term_source){NULL, energy, 2, 1, 0};
+    case HN_TERM_ENERGY: return (term_source){NULL, made, 2, 1, 0};
     case HN_TERM_POINTS: return (term_source){NULL, sys->points, 3 * sys->info.n_points, 1, 0};
+    case HN_TERM_RATES:  return (term_source){NULL, made, sys->nc, 1, 0};
     }
     // clang-format on
     return (term_source){NULL, NULL, 0, 0, 0};
@@ -95,8 +113,8 @@ static int count_entries(const term_source *s) {
 }
 
 static hn_status add_term(builder *b, const hn_system *sys, int k, hn_arena *arena) {
-    hn_ex energy[2];
-    term_source s = source_of(sys, k, energy);
+    make_term(sys, k, b->made);
+    term_source s = source_of(sys, k, b->made);
     term_values *term = &b->e->terms[k];
 
     size_t n = (size_t)count_entries(&s);
@@ -125,8 +143,7 @@ static int count_all(const hn_system *sys, unsigned terms) {
     int n = 0;
     for (int k = 0; k < HN_TERM_COUNT; k++) {
         if (terms & (1u << k)) {
-            hn_ex energy[2];
-            term_source s = source_of(sys, k, energy);
+            term_source s = source_of(sys, k, NULL);
             n += count_entries(&s);
         }
     }
@@ -135,10 +152,13 @@ static int count_all(const hn_system *sys, unsigned terms) {
 
 static hn_status build(hn_eval *e, const hn_system *sys, unsigned terms, hn_arena *arena) {
     int n = count_all(sys, terms);
-    builder b = {.e = e, .outputs = malloc(((size_t)n + 1) * sizeof(hn_ex)), .cap = n};
+    builder b = {.e = e,
+                 .outputs = malloc(((size_t)n + 1) * sizeof(hn_ex)),
+                 .cap = n,
+                 .made = malloc(((size_t)sys->nc + 2) * sizeof(hn_ex))};
     e->target = hn_arena_get(arena, (2 * (size_t)n + 1) * sizeof *e->target);
     e->source = hn_arena_ints(arena, 2 * (size_t)n + 1);
-    hn_status status = b.outputs && !hn_arena_failed(arena) ? HN_OK : HN_ERR_MEMORY;
+    hn_status status = b.outputs && b.made && !hn_arena_failed(arena) ? HN_OK : HN_ERR_MEMORY;
     for (int k = 0; k < HN_TERM_COUNT && status == HN_OK; k++) {
         if (terms & (1u << k)) {
             status = add_term(&b, sys, k, arena);
@@ -146,6 +166,7 @@ static hn_status build(hn_eval *e, const hn_system *sys, unsigned terms, hn_aren
     }
     HN_THEN(status, hn_inputs_compile(sys, b.outputs, e->n_out, arena, &e->in));
     free(b.outputs);
+    free(b.made);
     for (int k = 0; status == HN_OK && k < e->n_scatter; k++) {
         e->source[k] = e->in.slots[e->source[k]];
     }

@@ -15,9 +15,10 @@ typedef enum hn_term {
     HN_TERM_J = 1 << 4,      ///< nc x nv row-major
     HN_TERM_GAMMA = 1 << 5,  ///< nc
     HN_TERM_ENERGY = 1 << 6, ///< 2: kinetic, potential [J]
-    HN_TERM_POINTS = 1 << 7  ///< 3 n_points [m]
+    HN_TERM_POINTS = 1 << 7, ///< 3 n_points [m]
+    HN_TERM_RATES = 1 << 8   ///< nc: J v + phi_t
 } hn_term;
-enum { HN_TERM_COUNT = 8 };
+enum { HN_TERM_COUNT = 9 };
 
 typedef struct hn_eval hn_eval;
 

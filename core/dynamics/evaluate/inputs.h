@@ -35,8 +35,14 @@ static inline void hn_inputs_set(hn_inputs *in, double t, const double *q, const
         x[i] = q[i];
     }
     x += in->nq;
-    for (int i = 0; i < in->nv; i++) {
-        x[i] = v ? v[i] : 0;
+    if (v) {
+        for (int i = 0; i < in->nv; i++) {
+            x[i] = v[i];
+        }
+    } else {
+        for (int i = 0; i < in->nv; i++) {
+            x[i] = 0;
+        }
     }
     x += in->nv;
     x[0] = t;

@@ -96,12 +96,43 @@ void hn_explicit_rk_configure(void *self, const double *options) {
     hn_compensated_switch(&rk->sum, options[HN_FIXED_STEP_SUM] != 0);
 }
 
+/// Two entries, wherever they stand.
+typedef double pair __attribute__((vector_size(16), aligned(8), may_alias));
+
+static pair *two(double *x) {
+    return (pair *)x;
+}
+
+static pair get_two(const double *x) {
+    return *(const pair *)x;
+}
+
+// out = base + h w k of one slope, as in every stage of the classical method
+static void combine_one(const explicit_rk *rk, const weights *w, const double *base, double h,
+                        double *out) {
+    const double *const k = rk->k[w->at[0]], weight = w->w[0];
+    const int n = rk->n;
+    int j = 0;
+    for (; j + 1 < n; j += 2) {
+        *two(out + j) = get_two(base + j) + h * (0 + weight * get_two(k + j));
+    }
+    for (; j < n; j++) {
+        out[j] = base[j] + h * (0 + weight * k[j]);
+    }
+}
+
 // out = h sum_m w_m k_m of four slopes, as at the end of a step of the classical method
 static void combine_four(const explicit_rk *rk, const weights *w, double h, double *out) {
     const double *const a = rk->k[w->at[0]], *const b = rk->k[w->at[1]], *const c = rk->k[w->at[2]],
                         *const d = rk->k[w->at[3]];
     const double of_a = w->w[0], of_b = w->w[1], of_c = w->w[2], of_d = w->w[3];
-    for (int j = 0; j < rk->n; j++) {
+    const int n = rk->n;
+    int j = 0;
+    for (; j + 1 < n; j += 2) {
+        *two(out + j) = 0 + h * (0 + of_a * get_two(a + j) + of_b * get_two(b + j) +
+                                 of_c * get_two(c + j) + of_d * get_two(d + j));
+    }
+    for (; j < n; j++) {
         out[j] = 0 + h * (0 + of_a * a[j] + of_b * b[j] + of_c * c[j] + of_d * d[j]);
     }
 }
@@ -111,12 +142,8 @@ static void combine(const explicit_rk *rk, const weights *w, const double *base,
                     double *out) {
     const int n = rk->n;
 
-    // one slope, as in every stage of the classical method
     if (w->n == 1 && base) {
-        const double *k = rk->k[w->at[0]], weight = w->w[0];
-        for (int j = 0; j < n; j++) {
-            out[j] = base[j] + h * (0 + weight * k[j]);
-        }
+        combine_one(rk, w, base, h, out);
         return;
     }
     if (w->n == 4 && !base) {

@@ -19,12 +19,11 @@ void hn_compensated_switch(hn_compensated *c, int on) {
 // eq. (1); the part of y + s that rounding cut off is found whichever of the two is larger
 void hn_compensated_add(hn_compensated *c, int first, int n, const double *y,
                         const double *increment, double *y_new) {
-    for (int i = 0; i < n; i++) {
+    for (int i = 0; i < n && !c->on; i++) {
+        y_new[first + i] = y[first + i] + increment[i];
+    }
+    for (int i = 0; i < n && c->on; i++) {
         const int k = first + i;
-        if (!c->on) {
-            y_new[k] = y[k] + increment[i];
-            continue;
-        }
         const double s = increment[i] + c->kept[k], sum = y[k] + s, part = sum - y[k];
         c->trial[k] = (y[k] - (sum - part)) + (s - part);
         y_new[k] = sum;

@@ -11,9 +11,9 @@
 void hn_comparison_frame_json(hn_strbuf *b, const hn_comparison *c);
 /// Optional members of a frame: an array each, with an entry for each method.
 typedef enum hn_frame_extra {
-    HN_FRAME_SIGMA_MIN, ///< hn_run_sigma_min() at the last step that was checked
+    HN_FRAME_SIGMA_MIN, ///< hn_run_sigma_min() after the last step
     HN_FRAME_LAMBDA,    ///< multipliers of the sample, an array
-    HN_FRAME_CONDITION, ///< hn_run_condition() at the last step that was checked
+    HN_FRAME_CONDITION, ///< hn_run_condition() after the last step
     HN_FRAME_EXTRAS
 } hn_frame_extra;
 const char *hn_frame_extra_name(hn_frame_extra extra); ///< "sigma_min"

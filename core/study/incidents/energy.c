@@ -131,9 +131,14 @@ void hn_energy_explain(const hn_watch *w, char why[256]) {
     }
 }
 
+static bool is_kept(const hn_watch *w) {
+    return w->energy.conservative;
+}
+
 const hn_incident_kind hn_incident_energy_drift = {
     .code = HN_INCIDENT_ENERGY_DRIFT,
     .each_step = true,
+    .is_possible = is_kept,
     .is_wrong = true,
     .spelling = "energy-drift",
     .name = "the energy drifted",
@@ -148,6 +153,7 @@ const hn_incident_kind hn_incident_energy_drift = {
 const hn_incident_kind hn_incident_energy_jump = {
     .code = HN_INCIDENT_ENERGY_JUMP,
     .each_step = true,
+    .is_possible = is_kept,
     .is_wrong = true,
     .spelling = "energy-jump",
     .name = "the energy jumped",

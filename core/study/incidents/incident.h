@@ -79,7 +79,9 @@ typedef struct hn_incident_kind {
     /// Checks the state that the run has reached, and reports. NULL: reported at another moment (a
     /// chart that changes, the end of a run).
     void (*check)(hn_watch *w);
-    bool each_step;             ///< checked after every step, not only where a full check is due
+    bool each_step; ///< checked after every step, not only where a full check is due
+    /// Says whether it can come in this run at all. NULL: in every run.
+    bool (*is_possible)(const hn_watch *w);
     hn_remedy_rule remedies[4]; ///< what is offered, best first
     bool is_wrong; ///< from this incident on, the motion of the run is wrong; or the run ends
 } hn_incident_kind;

@@ -28,9 +28,14 @@ static void check(hn_watch *w) {
     }
 }
 
+static bool has_limits(const hn_watch *w) {
+    return hn_limits_count(w->limits) > 0;
+}
+
 const hn_incident_kind hn_incident_joint_limit = {
     .code = HN_INCIDENT_JOINT_LIMIT,
     .each_step = true,
+    .is_possible = has_limits,
     .spelling = "joint-limit",
     .name = "a coordinate passed its limit",
     .rule = "A limit in a scene is watched, not enforced: no force holds the coordinate there.",

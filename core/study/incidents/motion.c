@@ -7,38 +7,43 @@
 
 #include <math.h>
 
-/// The motion between two states: its largest component, at least `*moved`, and the largest that
-/// the velocities do not explain.
-static void compare_motion(const hn_watch *w, const hn_state_at *from, const hn_state_at *to,
-                           double *moved, double *rest) {
+/// The motion between two states.
+typedef struct movement {
+    double most;  ///< its largest component
+    double rest;  ///< the largest that the velocities do not explain
+    double along; ///< scalar product of the velocities: negative where they turn round
+} movement;
+
+static movement find_movement(const hn_watch *w, const hn_state_at *from, const hn_state_at *to) {
     const hn_stepping *s = w->run;
-    const bool plain = s->info.nq == s->info.nv; // no quaternions
-    const double half = 0.5 * (to->t - from->t), *step = w->scratch;
-    double most = *moved, more = 0;
+    const int n = s->info.nv;
+    const bool plain = s->info.nq == n; // no quaternions
+    const double half = 0.5 * (to->t - from->t), *start = from->q, *end = to->q;
+    movement m = {0};
     if (!plain) {
         hn_system_difference(s->sys, from->q, to->q, w->scratch);
     }
-    for (int i = 0; i < s->info.nv; i++) {
-        const double x = plain ? to->q[i] - from->q[i] : step[i];
-        const double way = fabs(x), other = fabs(x - half * (to->v[i] + from->v[i]));
-        most = way > most ? way : most;
-        more = other > more ? other : more;
+    for (int i = 0; i < n; i++) {
+        const double u = from->v[i], v = to->v[i];
+        const double step = plain ? end[i] - start[i] : w->scratch[i];
+        const double way = fabs(step), other = fabs(step - half * (v + u));
+        m.most = way > m.most ? way : m.most;
+        m.rest = other > m.rest ? other : m.rest;
+        m.along += v * u;
     }
-    *moved = most;
-    *rest = more;
+    return m;
 }
 
 double hn_motion_unexplained_between(const hn_watch *w, const hn_state_at *from,
                                      const hn_state_at *to, double least) {
-    double moved = least, rest = 0;
-    compare_motion(w, from, to, &moved, &rest);
-    return moved > 0 ? rest / moved : 0;
+    const movement m = find_movement(w, from, to);
+    const double most = m.most > least ? m.most : least;
+    return most > 0 ? m.rest / most : 0;
 }
 
-bool hn_motion_is_unexplained(const hn_watch *w, double share) {
-    double moved = 0, rest = 0;
-    compare_motion(w, &w->run->before, &w->run->now, &moved, &rest);
-    return rest > share * moved;
+bool hn_motion_is_steady(const hn_watch *w, double share) {
+    const movement m = find_movement(w, &w->run->before, &w->run->now);
+    return m.along >= 0 && m.rest <= share * m.most;
 }
 
 /// Steps of a pilot run: in one of the run, in half a turn of the fastest coordinate, in all.
@@ -106,10 +111,10 @@ double hn_motion_way(const hn_watch *w, const double *from, double *step) {
 
 // If all links of a loop lie on one line a whole row vanishes: the pivots of K, each measured
 // against its own row, do not see that.
-double hn_motion_shortest_row(const hn_watch *w) {
+double hn_motion_shortest_row(const hn_watch *w, const hn_closure_rows *rows) {
     double least = 1;
     for (int i = 0; i < w->run->info.nc; i++) {
-        const double size = hn_closure_rows_length(&w->rows, i);
+        const double size = hn_closure_rows_length(rows, i);
         const double largest = fmax(w->row_size[i], size);
         least = fmin(least, largest > 0 ? size / largest : 1);
     }

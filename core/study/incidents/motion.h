@@ -11,14 +11,15 @@ double hn_motion_unexplained_between(const hn_watch *w, const hn_state_at *from,
                                      const hn_state_at *to, double least);
 /// The same of the last step.
 double hn_motion_unexplained(const hn_watch *w, double least);
-/// Returns whether that is more than `share`, without a division: it is asked after every step.
-bool hn_motion_is_unexplained(const hn_watch *w, double share);
+/// Returns whether that is no more than `share` and the velocities do not turn round. Without a
+/// division: it is asked after every step.
+bool hn_motion_is_steady(const hn_watch *w, double share);
 /// Returns how far the motion from `from` (nq) to now would have opened a loop with one of its
-/// coordinates alone, over the length: with J of the state measured last. `step` (nv) gets the
-/// motion.
+/// coordinates alone, over the length: with J of the state checked in full last. `step` (nv) gets
+/// the motion.
 double hn_motion_way(const hn_watch *w, const double *from, double *step);
-/// Shortest row of J against the largest that row has been, at the state measured last.
-double hn_motion_shortest_row(const hn_watch *w);
+/// Returns the shortest row of J at some state against the largest that row has been.
+double hn_motion_shortest_row(const hn_watch *w, const hn_closure_rows *rows);
 /// Degrees of freedom at the start.
 int hn_motion_dof(const hn_watch *w);
 /// Runs a pilot run (dynamics/analyse/pilot.h) from a state to time t, with steps finer than those

@@ -41,16 +41,6 @@ hn_status hn_closure_rows_create(const hn_eval *eval, int nc, hn_arena *arena,
     return HN_OK;
 }
 
-void hn_closure_rows_times(const hn_closure_rows *rows, const double *v, double *out) {
-    for (int i = 0; i < rows->n; i++) {
-        double sum = 0;
-        for (int k = rows->first[i]; k < rows->first[i + 1]; k++) {
-            sum += rows->J[rows->at[k]] * v[rows->col[k]];
-        }
-        out[i] = sum;
-    }
-}
-
 double hn_closure_rows_length(const hn_closure_rows *rows, int i) {
     const int first = rows->first[i], end = rows->first[i + 1];
     double most = 0, sum = 0;

@@ -20,7 +20,7 @@ static hn_status create_memory(hn_watch *w) {
     const size_t nq = (size_t)w->run->info.nq, nv = (size_t)w->run->info.nv,
                  nc = (size_t)w->run->info.nc;
     double **const velocities[] = {&w->a, &w->scratch, &w->singular.inside, &w->singular.whole};
-    double **const rows[] = {&w->lambda, &w->velocity_gap, &w->row_size};
+    double **const rows[] = {&w->lambda, &w->row_size};
     for (size_t i = 0; i < sizeof velocities / sizeof *velocities; i++) {
         *velocities[i] = hn_arena_doubles(arena, nv);
     }
@@ -43,14 +43,17 @@ static hn_status create_memory(hn_watch *w) {
 }
 
 static hn_status create_evaluators(hn_watch *w) {
-    const unsigned terms = HN_TERM_PHI | HN_TERM_PHI_T | HN_TERM_J | HN_TERM_ENERGY;
+    const unsigned each_step = HN_TERM_PHI | HN_TERM_PHI_T | HN_TERM_RATES | HN_TERM_ENERGY;
     const hn_system *sys = w->run->sys;
     hn_arena *arena = w->run->arena;
-    HN_TRY(hn_eval_create_listed(sys, terms, arena, &w->eval));
+    HN_TRY(hn_eval_create(sys, each_step, arena, &w->eval));
     w->phi = hn_eval_get(w->eval, HN_TERM_PHI);
     w->phi_t = hn_eval_get(w->eval, HN_TERM_PHI_T);
+    w->closure_rates = hn_eval_get(w->eval, HN_TERM_RATES);
     w->energies = hn_eval_get(w->eval, HN_TERM_ENERGY);
-    HN_TRY(hn_closure_rows_create(w->eval, w->run->info.nc, arena, &w->rows));
+
+    HN_TRY(hn_eval_create_listed(sys, HN_CLOSURE_ROWS_TERMS, arena, &w->rows_eval));
+    HN_TRY(hn_closure_rows_create(w->rows_eval, w->run->info.nc, arena, &w->rows));
     HN_TRY(hn_limits_create(sys, arena, &w->limits));
     HN_TRY(hn_mode_watch_create(sys, arena, &w->mode));
     const size_t loops = (size_t)hn_mode_watch_count(w->mode);
@@ -74,6 +77,7 @@ hn_status hn_watch_create(const hn_stepping *run, const hn_cost *cost, double wa
 void hn_watch_free(hn_watch *w) {
     hn_incident_log_free(&w->log);
     hn_eval_free(w->eval);
+    hn_eval_free(w->rows_eval);
     hn_mode_watch_free(w->mode);
     hn_limits_free(w->limits);
     hn_singularity_free(w->singular.monitor);
@@ -82,13 +86,21 @@ void hn_watch_free(hn_watch *w) {
 
 // ---- measuring ----
 
+/// As hn_norm2(), which divides by the largest: squares of common size need no scaling.
+static double measure_length(int n, const double *x) {
+    static const double SMALL = 0x1p-900, LARGE = 0x1p900;
+    double sum = 0;
+    for (int i = 0; i < n; i++) {
+        sum += x[i] * x[i];
+    }
+    return sum > SMALL && sum < LARGE ? sqrt(sum) : hn_norm2(n, x);
+}
+
 hn_measure hn_watch_measure(hn_watch *w, double t, const double *q, const double *v) {
     const int nc = w->run->info.nc;
     hn_eval_run(w->eval, t, q, v);
-    hn_closure_rows_times(&w->rows, v, w->velocity_gap);
-    hn_axpy(nc, 1, w->phi_t, w->velocity_gap);
-    return (hn_measure){.gap = hn_norm2(nc, w->phi),
-                        .velocity_gap = hn_norm2(nc, w->velocity_gap),
+    return (hn_measure){.gap = measure_length(nc, w->phi),
+                        .velocity_gap = measure_length(nc, w->closure_rates),
                         .kinetic = w->energies[0],
                         .potential = w->energies[1]};
 }
@@ -146,18 +158,23 @@ static void find_own_pace(hn_watch *w) {
     for (int i = 0; i < HN_INCIDENT_COUNT; i++) {
         const hn_incident_kind *kind = hn_incident_kinds()[i];
         w->own_pace |= kind->each_step || !kind->check ? 1u << kind->code : 0;
-        if (kind->check && kind->each_step) {
+        const bool possible = !kind->is_possible || kind->is_possible(w);
+        if (kind->check && kind->each_step && possible) {
             w->each_step[w->n_each_step++] = kind;
         }
     }
 }
 
 // Gap and energy are checked after every step. The rest costs as much as two steps of a small
-// mechanism: singular values, multipliers, branches, limits. Along a way of STRIDE they change by
-// less than what is reported, so in short steps they are checked once in that way. Near a singular
-// configuration, while something is reported, and after a step that the velocities do not explain,
-// they are checked after every step.
-static const double STRIDE = 0.01;      // of the length: sigma_min changes by 3 % of its largest
+// mechanism: singular values, multipliers, branches, limits. What it reports happens near singular
+// configurations or in steps that the velocities do not explain. On a way of one length sigma_min
+// changes by no more than STEEP times its largest, so it is far from them on a way as long as it is
+// large, and short steps are checked once in that way. Near a singular configuration, while
+// something is reported, and after a step that is not explained, they are checked after every step.
+static const double STEEP = 3;
+static const double MARGIN = 2;         // the way is so many times shorter than that
+static const double LEAST = 0.01;       // of the length: shorter ways say nothing new
+static const double LONGEST = 0.1;      // and longer ones lose the direction of the motion
 static const double WELL = 0.4;         // sigma_min above this share of the largest so far is far
 static const double PIVOT_MARGIN = 1e2; // times the pivot ratio that is reported
 static const double NEAR_DUE = 10;      // steps before a predicted time: near it
@@ -180,8 +197,16 @@ static bool is_calm(const hn_watch *w) {
            row * row * w->accel_info.pivot_ratio > PIVOT_MARGIN * HN_RUN_WARN_PIVOT;
 }
 
-/// Returns whether the run has gone further than STRIDE since the last full check. In motion
-/// without jumps a way grows with the square of time at most: it is not measured before it can be
+/// Returns the way from the state of a full check to where the next is due [of the length].
+static double find_stride(const hn_watch *w) {
+    const hn_singular_record *s = &w->singular;
+    const double share = s->info.sigma_min / s->largest;
+    const double way = (share - WELL) / (MARGIN * STEEP);
+    return way > LONGEST ? LONGEST : way > LEAST ? way : LEAST;
+}
+
+/// Returns whether the run has gone further than that since the last full check. In motion without
+/// jumps a way grows with the square of time at most: it is not measured before it can be
 /// that long.
 static bool is_far(hn_watch *w) {
     enum { MOST = 4 }; // a short way says little of one that is longer by more
@@ -190,9 +215,9 @@ static bool is_far(hn_watch *w) {
         return false;
     }
     const double way = hn_motion_way(w, w->checked_q, w->scratch);
-    const double times = way * MOST > STRIDE ? STRIDE / way : MOST;
+    const double times = way * MOST > w->stride ? w->stride / way : MOST;
     w->near_until = w->checked_t + sqrt(times) * (t - w->checked_t);
-    return way > STRIDE;
+    return way > w->stride;
 }
 
 static bool is_full_check_due(hn_watch *w) {
@@ -203,8 +228,7 @@ static bool is_full_check_due(hn_watch *w) {
     if (w->at_start || s->info.nc == 0 || !w->calm || reported) {
         return true;
     }
-    return hn_dot(s->info.nv, s->now.v, s->before.v) < 0 ||
-           hn_motion_is_unexplained(w, UNEXPLAINED) || is_far(w);
+    return !hn_motion_is_steady(w, UNEXPLAINED) || is_far(w);
 }
 
 // ---- checking ----
@@ -229,6 +253,7 @@ static void check_present(hn_watch *w) {
     measure_present(w);
     const bool full = is_full_check_due(w);
     if (full && s->info.nc > 0) {
+        hn_eval_run(w->rows_eval, s->now.t, s->now.q, s->now.v);
         if (!w->at_start) {
             hn_crossing_check(w); // before the monitor sees the end of the step
         }
@@ -240,6 +265,7 @@ static void check_present(hn_watch *w) {
     if (full) {
         w->checks++;
         w->calm = s->info.nc > 0 && !w->at_start && is_calm(w);
+        w->stride = find_stride(w);
     }
     raise_to(&w->swiftest, hn_norm_max(s->info.nv, s->now.v));
 }
@@ -303,6 +329,15 @@ double hn_watch_energy_change(hn_watch *w, const hn_state_at *at, const hn_measu
                               double *work) {
     *work = w->every > 0 || !w->work.on ? hn_work_at(&w->work, at) : nan("");
     return m->kinetic + m->potential - *work - w->energy.start;
+}
+
+hn_singularity_info hn_watch_singularity(const hn_watch *w) {
+    const hn_state_at *now = &w->run->now;
+    hn_singularity_info info = w->singular.info;
+    if (now->t != w->checked_t) {
+        (void)hn_singularity_probe_both(w->singular.monitor, now->t, now->q, &info);
+    }
+    return info;
 }
 
 hn_status hn_watch_check(hn_watch *w, char why[256]) {

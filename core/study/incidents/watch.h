@@ -119,6 +119,7 @@ struct hn_watch {
     // of the state checked in full last
     double *checked_q;   ///< nq
     double checked_t;    ///< its time [s]
+    double stride;       ///< way from there to the next full check, over the length
     double near_until;   ///< before this time the run is too near it for another check [s]
     double shortest_row; ///< hn_motion_shortest_row() there
     const hn_incident_kind *each_step[HN_INCIDENT_COUNT]; ///< those checked after every step
@@ -147,12 +148,12 @@ struct hn_watch {
     char *beyond;               ///< per limit: it is passed at present
     double *limited;            ///< values of the coordinates with limits
 
-    hn_eval *eval;                        ///< phi, phi_t, J, energy
-    const double *phi, *phi_t, *energies; ///< its values
+    hn_eval *eval; ///< of every state: phi, phi_t, J v + phi_t, energy
+    const double *phi, *phi_t, *closure_rates, *energies; ///< its values
+    hn_eval *rows_eval;                                   ///< of states checked in full
     hn_closure_rows rows;
     hn_mode_watch *mode;
     hn_limits *limits;
-    double *velocity_gap; ///< nc
 };
 
 /// Makes the watching half of a run; memory from its arena. `cost` is borrowed. Fails:
@@ -175,6 +176,9 @@ double hn_watch_energy_change(hn_watch *w, const hn_state_at *at, const hn_measu
 /// Checks the present state of the run against the table of incidents. Fails with HN_ERR_DIVERGED
 /// and the reason in `why` where the loops are open by HN_RUN_LOST_GAP or more.
 HN_MUST_CHECK hn_status hn_watch_check(hn_watch *w, char why[256]);
+/// Returns the singular values of the scaled J at the present state of the run; where they cost too
+/// much, at the state checked in full last.
+hn_singularity_info hn_watch_singularity(const hn_watch *w);
 /// Measures any state.
 hn_measure hn_watch_measure(hn_watch *w, double t, const double *q, const double *v);
 

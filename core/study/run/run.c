@@ -343,12 +343,14 @@ int hn_run_incidents(const hn_run *run, const hn_incident **out) {
 }
 
 double hn_run_sigma_min(const hn_run *run) {
-    return run->stepping.info.nc > 0 ? run->watch.singular.info.sigma_min : (double)NAN;
+    const bool any = run->stepping.info.nc > 0;
+    return any ? hn_watch_singularity(&run->watch).sigma_min : (double)NAN;
 }
 
 double hn_run_condition(const hn_run *run) {
-    const double ratio = run->watch.singular.info.ratio;
-    return run->stepping.info.nc == 0 ? (double)NAN : ratio > 0 ? 1 / ratio : HUGE_VAL;
+    const bool any = run->stepping.info.nc > 0;
+    const double ratio = any ? hn_watch_singularity(&run->watch).ratio : (double)NAN;
+    return isnan(ratio) ? ratio : ratio > 0 ? 1 / ratio : HUGE_VAL;
 }
 
 int hn_run_passed_singular(const hn_run *run, double *t) {

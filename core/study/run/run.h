@@ -86,7 +86,7 @@ const char *hn_run_sample_why(const hn_run *run, hn_status status);
 bool hn_run_has_raw_lambda(const hn_run *run);
 hn_run_summary hn_run_get_summary(const hn_run *run);
 int hn_run_incidents(const hn_run *run, const hn_incident **out); ///< count; borrowed
-/// The smallest singular value of the constraint rows at the last step that was checked
+/// The smallest singular value of the constraint rows after the last step
 /// (dynamics/analyse/singularity_monitor.h); NaN without rows.
 double hn_run_sigma_min(const hn_run *run);
 /// The condition number of the constraint rows there: largest over smallest singular value. NaN

@@ -139,7 +139,8 @@ static void fill_forces(hn_sampling *s, double t, hn_sample *out) {
 
 static void fill_measures(hn_sampling *s, double t, hn_sample *out) {
     const hn_measure m = hn_watch_measure(s->watch, t, s->q, s->v);
-    const double row = hn_motion_shortest_row(s->watch); // J M^-1 J' has it squared
+    hn_eval_run(s->rows_eval, t, s->q, s->v);
+    const double row = hn_motion_shortest_row(s->watch, &s->rows); // J M^-1 J' has it squared
     out->gap = s->gap = m.gap;
     out->velocity_gap = m.velocity_gap;
     out->kinetic = m.kinetic;
@@ -206,10 +207,12 @@ hn_status hn_sampling_create(hn_stepping *run, hn_watch *watch, bool raw_lambda,
         *rows[i] = hn_arena_doubles(arena, nc);
     }
 
-    // evaluators: points, and a second engine beside the run
+    // evaluators of points and rows, and a second engine beside the run
     s->points = hn_arena_doubles(arena, 3 * (size_t)run->info.n_points);
     if (hn_arena_failed(arena) ||
-        hn_eval_create(run->sys, HN_TERM_POINTS, arena, &s->points_eval) != HN_OK) {
+        hn_eval_create(run->sys, HN_TERM_POINTS, arena, &s->points_eval) != HN_OK ||
+        hn_eval_create_listed(run->sys, HN_CLOSURE_ROWS_TERMS, arena, &s->rows_eval) != HN_OK ||
+        hn_closure_rows_create(s->rows_eval, run->info.nc, arena, &s->rows) != HN_OK) {
         return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory");
     }
     return hn_engine_create(run->sys, &run->spec, run->accel, arena, &s->side, diag);
@@ -218,4 +221,5 @@ hn_status hn_sampling_create(hn_stepping *run, hn_watch *watch, bool raw_lambda,
 void hn_sampling_free(hn_sampling *s) {
     hn_engine_destroy(&s->side);
     hn_eval_free(s->points_eval);
+    hn_eval_free(s->rows_eval);
 }

@@ -35,6 +35,8 @@ typedef struct hn_sampling {
     bool raw_lambda; ///< samples carry the scheme's own multipliers too, where it has some
     hn_engine side;
     hn_eval *points_eval;
+    hn_eval *rows_eval;
+    hn_closure_rows rows;
     long long inside; ///< samples between steps that were checked
     // the state of the last sample, what the solve there said, and the scheme's own multipliers
     // there

@@ -136,7 +136,7 @@ static const struct {
      "\"ops\":" MAYBE_NUMBER ",\"cpu\":" MAYBE_NUMBER "}}},"
      "\"sigma_min\":{\"type\":\"array\",\"items\":" MAYBE_NUMBER
      ",\"description\":\"of each method, when fields asks for it: the smallest singular value of "
-     "the constraint rows, scaled by the masses, at the last step that was checked\"},"
+     "the constraint rows, scaled by the masses, after the last step\"},"
      "\"lambda\":{\"type\":\"array\",\"items\":{\"type\":\"array\",\"items\":" MAYBE_NUMBER
      "},\"description\":\"of each method, when fields asks for it: multipliers\"},"
      "\"condition\":{\"type\":\"array\",\"items\":" MAYBE_NUMBER

@@ -50,8 +50,8 @@ static void phi_after(probe *p, double t, const double *q, const double *v, doub
     memcpy(phi, hn_eval_get(p->eval, HN_TERM_PHI), (size_t)p->m.info.nc * sizeof *phi);
 }
 
-/// phi' = J v + phi_t and phi'' = gamma along a motion of constant v, by five-point differences, at
-/// states where nothing is closed.
+/// phi' = J v + phi_t, a term of its own too, and phi'' = gamma along a motion of constant v, by
+/// five-point differences, at states where nothing is closed.
 static void check_derivatives(const char *json, int rows) {
     const double h = 1e-3, t = 0.4;
     probe p;
@@ -80,6 +80,7 @@ static void check_derivatives(const char *json, int rows) {
                 (12 * h * h);
             const double gamma = hn_eval_get(p.eval, HN_TERM_GAMMA)[i];
             assert_near(rate, d1, 1e-9 * (1 + fabs(d1))); // h^4 and rounding / h
+            assert_near(hn_eval_get(p.eval, HN_TERM_RATES)[i], rate, 1e-13 * (1 + fabs(rate)));
             assert_near(gamma, d2, 1e-7 * (1 + fabs(d2)));
         }
     }
