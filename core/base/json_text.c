@@ -361,6 +361,9 @@ static int value(scan *s) {
     if (c == '-' || is_digit(c)) {
         return number(s);
     }
+    if (s->at == 0 && (c == 0xEF || c == 0xFE || c == 0xFF)) {
+        return expected(s, "save the text as UTF-8 without a byte order mark", "a value");
+    }
     return expected(s, c > 0x20 && c < 0x7F ? "write texts in double quotes" : NULL, "a value");
 }
 

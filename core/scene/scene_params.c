@@ -281,7 +281,7 @@ static void check_settings(hn_reader *r) {
         if (!hn_scene_start_name(name) && hn_scene_find_param(r->scene, name) < 0) {
             char hint[HN_DIAG_HINT];
             hn_rd_suggest(hint, sizeof hint, name, names, r->scene->n_params);
-            hn_rd_fault(r, hint, "this scene has no parameter '%.60s'", name);
+            hn_rd_fault_at(r, name, hint, "this scene has no parameter '%.60s'", name);
         }
     }
 }

@@ -82,13 +82,18 @@ AT_FAULT = [
     ("runs", but(RUN, every=-0.1), "/every", ""),
     ("runs", but(RUN, every=1e-9), "/every", ""),
     ("runs", but(RUN, at=[]), "/at", ""),
-    ("runs", but(RUN, at=[1, "2"]), "/at", "numbers"),
+    ("runs", but(RUN, at=[1, "2"]), "/at/1", "entry 2 of 'at' is the text '2'; it must be a number"),
     ("runs", but(RUN, at=[0.05, 0.01]), "/at", "ascending"),
     ("runs", but(RUN, at=[0.05, 5]), "/at", ""),
-    ("runs", but(RUN, parameters={"l1": "long"}), "/parameters", "numbers"),
-    ("runs", but(RUN, parameters=[1]), "/parameters", ""),
-    ("runs", but(RUN, parameters={"nonsense": 1}), None, "nonsense"),
-    ("runs", but(RUN, parameters={"a/b~c": 1}), None, ""),
+    ("runs", but(RUN, parameters={"l1": "long"}), "/parameters/l1", "'l1' is the text 'long'; it must be a number"),
+    ("runs", but(RUN, parameters=[1]), "/parameters", "'parameters' is an array; it must be an object of numbers"),
+    ("runs", but(RUN, time=True), "/time", "'time' is true; it must be a number"),
+    ("runs", but(RUN, time="1"), "/time", "'time' is the text '1'; it must be a number"),
+    ("runs", but(RUN, scene=[]), "/scene", "'scene' is an array; it must be the id of a shipped scene or a scene object"),
+    ("runs", but(RUN, methods=["index1@rk4", 7]), "/methods/1", "entry 2 of 'methods' is 7; it must be a string"),
+    ("studies", {"kind": "stability", "scene": "four-bar", "methods": ["baumgarte@rk4"], "columns": 4.5}, "/columns", "'columns' is 4.5; it must be a whole number"),
+    ("runs", but(RUN, parameters={"nonsense": 1}), "/parameters/nonsense", "nonsense"),
+    ("runs", but(RUN, parameters={"a/b~c": 1}), "/parameters/a~1b~0c", "a/b~c"),
     ("terms", {"scene": "four-bar", "state": {"nonsense": 1}}, "/state/nonsense", ""),
     ("terms", {"scene": "four-bar", "state": {"th1": 1e16}}, "/state/th1", "so large that rounding changes"),
     ("drag", {"scene": "four-bar", "state": {"th1": -1e20}, "point": 1, "target": [0, 1]}, "/state/th1", "so large that rounding changes"),
@@ -298,6 +303,11 @@ class Malformed(driver.ServerCase):
             with self.subTest(path=path, body=body):
                 document = self.assert_problem(self.server.ask("POST", "/api/v1/" + path, body), 422)
                 self.assertEqual([e["pointer"] for e in document["errors"]], pointers)
+
+    def test_a_byte_order_mark_is_told(self):
+        for text in (json.dumps(RUN).encode("utf-8-sig"), json.dumps(RUN).encode("utf-16")):
+            document = self.assert_problem(self.server.ask("POST", "/api/v1/runs", text, {"Content-Type": "application/json"}), 400, "bad-json")
+            self.assertEqual(document["hint"], "save the text as UTF-8 without a byte order mark")
 
     def test_faults_inside_a_scene_are_told_by_their_place_in_the_body(self):
         scene = json.load(open("lessons/01-closed-loops/scenes/pendulum.json"))
@@ -519,11 +529,12 @@ class Malformed(driver.ServerCase):
         self.assertEqual(told(), ["/scene/parameters/l1/min"])
         self.assertEqual(told(parameters={"l1": 0.5}), ["/scene/parameters/l1/min"])
         scene["parameters"]["l1"] = 0.4
-        self.assertEqual(told(parameters={"none": 1}), ["/parameters"])
+        self.assertEqual(told(parameters={"none": 1}), ["/parameters/none"])
         scene["parameters"]["l1"] = {"value": 0.4, "min": 0.3, "max": "a"}
         self.assertEqual(told(), ["/scene/parameters/l1/max"])
         scene["parameters"] = 7
         self.assertEqual(told(), ["/scene/parameters"])
+        self.assertEqual(told(parameters={"l1": 1})[0], "/scene/parameters")
 
     def test_options_lists_the_verbs_and_allows_no_other_origin(self):
         answer = self.server.ask("OPTIONS", "/api/v1/comparisons")

@@ -9,6 +9,7 @@ import re
 import subprocess
 import sys
 import tempfile
+import unittest
 
 sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "api"))
 sys.path.insert(0, os.path.dirname(__file__))
@@ -242,7 +243,7 @@ class CommandLine(Command):
             (("compare", "four-bar", "--methods", RK4, "foo"), "(in --methods)"),
             (("run", "for-bar"), "(in SCENE)"),
             (("run", "four-bar", "--time", "-1"), "(in --time)"),
-            (("run", "four-bar", "--set", "nonsense=1"), "(in --set)"),
+            (("run", "four-bar", "--set", "nonsense=1"), "(in --set nonsense)"),
             (("run", "four-bar", "--set", "l1=50"), "(start value of th1)"),
             (("terms", "four-bar", "--q", "nonsense=1"), "(in --q nonsense)"),
             (("terms", "four-bar", "--v", "nonsense=1"), "(in --v nonsense)"),
@@ -402,6 +403,12 @@ class CommandLine(Command):
             second.terminate()
             second.communicate(timeout=30 * driver.SLOW)
             first.stop()
+
+    @unittest.skipIf(driver.SLOW > 1, "a sanitiser reserves more than the limit")
+    def test_a_server_without_memory_for_its_threads_says_what_it_needs(self):
+        done = subprocess.run(["sh", "-c", 'ulimit -v 300000; exec "$0" serve --port 0', driver.PROGRAM], capture_output=True, text=True)
+        self.assertEqual((done.returncode, done.stdout), (PROGRAM, ""))
+        self.assertRegex(done.stderr, "(?s)refuses memory or a thread .* seventy threads, each with a stack of .*'ulimit -v'")
 
     def test_serve_tells_its_address_and_to_a_terminal_its_keys(self):
         """A journal has no keys: 'Ctrl+C here ends it' stood in that of a service."""

@@ -114,7 +114,7 @@ class Kept(unittest.TestCase):
                 deadline = time.monotonic() + 60
                 while not studies.journals(self.folder, "study-") and time.monotonic() < deadline:
                     time.sleep(0.01)
-                time.sleep(1)
+                time.sleep(studies.driver.SLOW)
                 process.send_signal(how)
                 told = process.stderr.read().decode()
                 self.assertEqual(process.wait(timeout=600), studies.ENDED, told)

@@ -46,7 +46,7 @@ static void member_pointer(char out[HN_DIAG_POINTER], const char *parent, const 
 }
 
 static const char *type_words(const hn_field *f) {
-    // the wording completes "expected ..."
+    // the wording completes "it must be ..."
     switch (f->type) {
     case HN_FIELD_SCENE:
         return "the id of a shipped scene or a scene object";
@@ -235,11 +235,71 @@ static hn_status check_spelling(const cJSON *value, const char *pointer, hn_diag
     return status;
 }
 
+/// Names what stands where something else is expected.
+static void describe(const cJSON *value, char *out, size_t size) {
+    if (cJSON_IsString(value)) {
+        snprintf(out, size, "the text '%.40s'", value->valuestring);
+    } else if (cJSON_IsNumber(value)) {
+        snprintf(out, size, "%.17g", value->valuedouble);
+    } else {
+        snprintf(out, size, "%s",
+                 cJSON_IsArray(value)    ? "an array"
+                 : cJSON_IsObject(value) ? "an object"
+                 : cJSON_IsTrue(value)   ? "true"
+                 : cJSON_IsFalse(value)  ? "false"
+                                         : "null");
+    }
+}
+
+/// Reports the members of an object or array that are not numbers (or strings), up to the first of
+/// an array; returns whether there was one.
+static bool refuse_members(const cJSON *value, const hn_field *f, const char *pointer,
+                           hn_diags *diags) {
+    const bool texts = f->type == HN_FIELD_TEXTS;
+    bool found = false;
+    int index = 0;
+    const cJSON *item;
+    cJSON_ArrayForEach(item, value) {
+        char place[HN_DIAG_POINTER], number[16], word[64];
+        snprintf(number, sizeof number, "%d", index++);
+        if (texts ? cJSON_IsString(item) : cJSON_IsNumber(item)) {
+            continue;
+        }
+        describe(item, word, sizeof word);
+        member_pointer(place, pointer, item->string ? item->string : number);
+        if (item->string) {
+            hn_diags_add(diags, HN_ERR_INPUT, place, NULL, "'%.60s' is %s; it must be a number",
+                         item->string, word);
+        } else if (!found) {
+            hn_diags_add(diags, HN_ERR_INPUT, place, NULL,
+                         "entry %d of '%s' is %s; it must be a %s", index, f->name, word,
+                         texts ? "string" : "number");
+        }
+        found = true;
+    }
+    return found;
+}
+
+/// Reports a value of the wrong type: what it is, and what it must be.
+static hn_status refuse_type(const cJSON *value, const hn_field *f, const char *pointer,
+                             hn_diags *diags) {
+    const bool has_members =
+        f->type == HN_FIELD_BY_NAME
+            ? cJSON_IsObject(value)
+            : (f->type == HN_FIELD_TEXTS || f->type == HN_FIELD_NUMBERS) && cJSON_IsArray(value);
+    if (has_members && refuse_members(value, f, pointer, diags)) {
+        return HN_ERR_INPUT;
+    }
+    char word[64];
+    describe(value, word, sizeof word);
+    return hn_diags_add(diags, HN_ERR_INPUT, pointer, NULL, "'%s' is %s; it must be %s", f->name,
+                        word, type_words(f));
+}
+
 static hn_status check_member(const cJSON *value, const hn_field *f, const char *pointer,
                               bool served, hn_diags *diags) {
     if (!has_type(value, f)) {
-        return hn_diags_add(diags, HN_ERR_INPUT, pointer, NULL, "'%s' must be %s", f->name,
-                            type_words(f));
+        return refuse_type(value, f, pointer, diags);
     }
     if (cJSON_IsNumber(value) || cJSON_IsArray(value)) {
         HN_TRY(check_range(value, f, pointer, served, diags));

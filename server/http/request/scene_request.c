@@ -125,6 +125,18 @@ hn_status hn_scene_request_copy(hn_scene_request *to, const hn_scene_request *fr
     return HN_OK;
 }
 
+/// Returns whether the last part of a pointer is this name, with '~' and '/' escaped.
+static bool is_name(const char *part, const char *name) {
+    while (*part && *name) {
+        const char plain = *part != '~' ? *part : part[1] == '1' ? '/' : '~';
+        if (plain != *name++ || *part == '/') {
+            return false;
+        }
+        part += *part == '~' && part[1] ? 2 : 1;
+    }
+    return !*part && !*name;
+}
+
 /// Returns whether a place is a member of the request, not of the scene in it: both have
 /// "parameters".
 static bool is_of_request(const hn_scene_request *order, const char *pointer) {
@@ -132,14 +144,11 @@ static bool is_of_request(const hn_scene_request *order, const char *pointer) {
     if (strncmp(pointer, "/scene", 6) == 0 || strncmp(pointer, "/pull", 5) == 0) {
         return true;
     }
-    if (strcmp(pointer, "/parameters") == 0) {
-        return order->n > 0; // a name among them that the scene does not know
-    }
     if (strncmp(pointer, parameters, sizeof parameters - 1) != 0) {
         return false;
     }
     for (int i = 0; i < order->n; i++) {
-        if (strcmp(pointer + sizeof parameters - 1, order->names[i]) == 0) {
+        if (is_name(pointer + sizeof parameters - 1, order->names[i])) {
             return true;
         }
     }

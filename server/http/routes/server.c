@@ -92,6 +92,17 @@ static hn_status start_daemon(hn_server *s, int fd, hn_diag *diag) {
 }
 
 /// The parts that handlers and event loops work with.
+/// Returns the bytes of the stack of a thread.
+static long long stack_size(void) {
+    pthread_attr_t attributes;
+    size_t size = 0;
+    if (pthread_attr_init(&attributes) == 0) {
+        pthread_attr_getstacksize(&attributes, &size);
+        pthread_attr_destroy(&attributes);
+    }
+    return (long long)size;
+}
+
 static hn_status create_parts(hn_server *s, hn_diag *diag) {
     hn_context *c = &s->context;
     const hn_http_opts *o = &c->opts;
@@ -116,7 +127,11 @@ static hn_status create_parts(hn_server *s, hn_diag *diag) {
     c->run_list = hn_run_list_create(o->runs_folder);
     if (!s->dispatch.heavy || !s->dispatch.quick || !s->dispatch.connections || !c->streams ||
         !c->comparisons || !c->studies || !c->runs || !c->run_list) {
-        return hn_diag_set(diag, HN_ERR_MEMORY, NULL, NULL, "out of memory or threads");
+        return hn_diag_set(diag, HN_ERR_MEMORY, NULL,
+                           "'ulimit -v' and 'ulimit -u' say what this shell allows",
+                           "the system refuses memory or a thread to the server, which starts some "
+                           "seventy threads, each with a stack of %lld kB",
+                           stack_size() / 1024);
     }
     return HN_OK;
 }
