@@ -103,6 +103,7 @@ class Pulls(driver.ServerCase):
                 ({"pull": {"point": 99, "to": [0, 0]}}, "/pull/point"),
                 ({"pull": {"point": POINT}}, "/pull/to"),
                 ({"pull": {"point": POINT, "to": [1]}}, "/pull/to"),
+                ({"pull": {"point": POINT, "to": [1, -1e101]}}, "/pull/to/1"),
                 ({"pull": {"point": POINT, "to": [1, 2], "stiffness": -1}}, "/pull/stiffness"),
                 ({"pulls": [[0, POINT, 1, 1, 0, 5]]}, "/pulls/0"),
                 ({"pulls": [[5, POINT, 1, 1, 0, 5, 1], [4, POINT, 1, 1, 0, 5, 1]]}, "/pulls/1"),

@@ -93,7 +93,11 @@ hn_map_team *hn_map_team_create(hn_map *map) {
     team->members = calloc((size_t)threads, sizeof *team->members);
     team->done = malloc((cells + 1) * sizeof *team->done);
     pthread_mutex_init(&team->lock, NULL);
-    pthread_cond_init(&team->changed, NULL);
+    pthread_condattr_t attributes;
+    pthread_condattr_init(&attributes);
+    pthread_condattr_setclock(&attributes, CLOCK_MONOTONIC); // a clock that is set moves no wait
+    pthread_cond_init(&team->changed, &attributes);
+    pthread_condattr_destroy(&attributes);
 
     // loaded one by one: only what happens in threads needs scenes of its own
     bool made = team->members && team->done;
@@ -160,7 +164,7 @@ static void *work(void *user) {
 /// Waits for something new, a little while at most; with the lock held.
 static void wait_a_little(hn_map_team *team) {
     struct timespec until;
-    clock_gettime(CLOCK_REALTIME, &until);
+    clock_gettime(CLOCK_MONOTONIC, &until);
     until.tv_nsec += LOOK_EVERY;
     until.tv_sec += until.tv_nsec / 1000000000;
     until.tv_nsec %= 1000000000;

@@ -7,7 +7,9 @@
 #include "http/live/pulls.h"
 #include "session/job/field.h"
 
+#include <math.h>
 #include <stdbool.h>
+#include <stdio.h>
 #include <string.h>
 
 /// Steps on request are not interrupted by other requests for so long [s].
@@ -295,6 +297,21 @@ static void find_hand(const hn_session *session, change *c) {
     }
 }
 
+/// Checks where the hand is: the comparison takes it only when the change has been made.
+static hn_status check_hand(const change *c, hn_diags *diags) {
+    hn_status status = HN_OK;
+    for (int k = 0; c->pull && k < 3; k++) {
+        if (!(fabs(c->hand.to[k]) <= HN_SCENE_MAX_NUMBER)) {
+            char pointer[32];
+            snprintf(pointer, sizeof pointer, "/pull/to/%d", k);
+            status = hn_diags_add(diags, HN_ERR_INPUT, pointer, NULL,
+                                  "entry %d of 'to' is %g; %g to %g are allowed", k + 1,
+                                  c->hand.to[k], -HN_SCENE_MAX_NUMBER, HN_SCENE_MAX_NUMBER);
+        }
+    }
+    return status;
+}
+
 void hn_session_apply(hn_session *session, hn_request *r) {
     if (!hn_request_read_body(r)) {
         return;
@@ -308,9 +325,9 @@ void hn_session_apply(hn_session *session, hn_request *r) {
     // everything that can fail, then the change
     hn_subject fresh = {0};
     hn_diags diags = {0};
-    hn_status status = HN_OK;
+    hn_status status = check_hand(&c, &diags);
     hn_session_limit_equations(session, c.settings || c.pulls || c.is_new);
-    if (c.methods || c.settings || c.pulls || c.is_new) {
+    if (status == HN_OK && (c.methods || c.settings || c.pulls || c.is_new)) {
         status = build(session, &c, &fresh, &diags);
     }
     if (session->interrupted) {
