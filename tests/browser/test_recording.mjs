@@ -47,7 +47,7 @@ test("Play goes on from where the scrubber stands, and computes nothing again", 
 
 test("after the recording the computation goes on; at the end Replay starts from 0, and loops", async (t) => {
   const page = await open(t, { hash: "#pendulum" });
-  await fastest(page);
+  await page.focus("#play");
   await page.keyboard.press("Space");
   await until(page, (data) => data.latest?.t > 0.5);
   await page.keyboard.press("Space");
@@ -55,6 +55,7 @@ test("after the recording the computation goes on; at the end Replay starts from
   await page.keyboard.press("Backspace");
   await until(page, (data) => data.view.shown === 0);
   const head = await read(page, (data) => data.latest.t);
+  await fastest(page);
   await page.keyboard.press("Space");
   await until(page, `(data) => data.latest.t > ${head} && data.view.shown < 0`);
   await until(page, (data) => data.state === "finished");
