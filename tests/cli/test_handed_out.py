@@ -51,7 +51,7 @@ def forms_in_every_spelling(folder):
 def ranges(_):
     """A student and a teacher read between which values the numbers are drawn."""
     text = run("problem", "stiff", "--wide").stdout
-    expect("the text has the ranges", "Other variants have other numbers: m 0.5 to 4 kg; k 100 to 900; c 2 to 20; tl 0.3 to 1.5 s; T 1 to 5 s; n 6, 8 or 10." in text, text)
+    expect("the text has the ranges", "Other variants have other numbers: m 0.5 to 4 kg; k 100 to 900 kN/m; c 2 to 20 kN s/m; tl 0.3 to 1.5 s; T 1 to 5 s; n 6, 8 or 10." in text, text)
     text = run("problem", "p3", "--wide").stdout
     expect("that of a matrix too", "Other variants have other numbers: l1 0.3 to 3 m; " in text and "th4 -3 to 3 rad." in text, text)
     text = run("problem", "coupler-curve", "--wide").stdout

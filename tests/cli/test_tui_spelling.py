@@ -89,7 +89,7 @@ class Ascii(unittest.TestCase):
 
     def test_the_words_are_those_of_the_formulas(self):
         text = " ".join(self.questions("t01<Enter>", "--ascii")[1].replace("|", " ").split())
-        self.assertIn("Take three absolute angles: theta_1 of the crank, theta_2 of the coupler, theta_3 of the rocker.", text)
+        self.assertIn("all measured from the x axis: theta_1 of the crank, theta_2 of the coupler, theta_3 of the rocker.", text)
         self.assertIn("J(q) v = 0, J = (d phi)/(d q), v = qdot .", text)
 
     def test_texts_of_commands(self):
