@@ -299,7 +299,7 @@ export function createPlotPane(data, actions, { id, onHover, onZoom }) {
     const last = history.t[history.count - 1];
     const [from, to] = history.inSight(data.view.zoom);
     const seen = (column) => column.subarray(from, to);
-    const buckets = Math.max(LEAST_BUCKETS, canvas.clientWidth);
+    const buckets = Math.max(LEAST_BUCKETS, plot.width);
     const thinned = thin(seen(history.t), columns.map(seen), to - from, buckets, map);
     plot.draw(thinned, last, history.t[shownIndex(data)]);
   }

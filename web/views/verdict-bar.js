@@ -22,12 +22,10 @@ export function createVerdictBar(el, store) {
   const others = h("ul", {});
   const changes = h("details", { class: "change", hidden: true }, changed, others);
   el.replaceChildren(changes, seen, live, banner);
-  changes.addEventListener("toggle", () => (forgetRoom(), keepRoom()));
+  changes.addEventListener("toggle", forgetRoom);
   let saidAt = -PAUSE;
   let timer = 0;
-  /** [px] of the bar since the methods changed, and the sentences it was last measured for */
-  let tallest = 0;
-  let roomFor = "";
+  let tallest = 0; // [px] of the bar since the methods changed
 
   /** Sentences about the frame shown, with their tones. */
   function present() {
@@ -56,6 +54,9 @@ export function createVerdictBar(el, store) {
     });
   }
 
+  // measured when the browser has laid it out anyway: asking at any other time costs a layout
+  const measure = new ResizeObserver(keepRoom);
+
   /** It grows with its sentences and never shrinks: what stands above moves as little as it can. */
   function keepRoom() {
     const room = el.offsetHeight;
@@ -68,8 +69,9 @@ export function createVerdictBar(el, store) {
   /** Other methods, another scene, another width: other sentences. */
   function forgetRoom() {
     tallest = 0;
-    roomFor = "";
     document.documentElement.style.removeProperty("--verdict-room");
+    measure.unobserve(el);
+    measure.observe(el); // asks for its size once, also where that is the same
   }
 
   /** Shows the effect of a change: of the selected method in a line, of the others under it. */
@@ -98,11 +100,6 @@ export function createVerdictBar(el, store) {
     }
     say(banner, failures().join("; "));
     paintChanges();
-    const all = changes.textContent + key;
-    if (all !== roomFor) {
-      roomFor = all;
-      keepRoom();
-    }
   }
 
   function speak() {
@@ -127,6 +124,7 @@ export function createVerdictBar(el, store) {
     update();
   }
 
+  measure.observe(el);
   addEventListener("resize", forgetRoom);
   const stop = listen(store, {
     methods: () => {
@@ -142,6 +140,7 @@ export function createVerdictBar(el, store) {
     dispose() {
       stop();
       removeEventListener("resize", forgetRoom);
+      measure.disconnect();
       clearTimeout(timer);
       paintNoMore(paint);
       el.replaceChildren();

@@ -240,6 +240,10 @@ export function createPlot(el, options) {
   return {
     /** The smallest value that is plotted. */
     floor: FLOOR,
+    /** [px] as drawn last: the element itself would have to be laid out to tell; 0 before */
+    get width() {
+      return plot?.width ?? 0;
+    },
     /**
      * New curves: a new comparison, another selection, another theme, another quantity.
      * @param {Series[]} wanted
