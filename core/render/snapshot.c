@@ -143,9 +143,9 @@ static hn_status draw_sheet(hn_canvas *c, const hn_drawing *drawing, const hn_sn
                          opts, diag));
 
     // scratch for the order of painting
-    const size_t n_shapes = (size_t)drawing->n_shapes + 1;
-    sheet->shapes = malloc(n_shapes * sizeof *sheet->shapes);
-    sheet->depth = malloc(n_shapes * sizeof *sheet->depth);
+    const size_t n = (size_t)drawing->n_shapes * HN_SHAPE_ORDERS + 1;
+    sheet->shapes = malloc(n * sizeof *sheet->shapes);
+    sheet->depth = malloc(n * sizeof *sheet->depth);
     hn_status status = HN_OK;
     if (sheet->shapes && sheet->depth) {
         paint(c, sheet, drawing, poses, n_poses, opts, placed);

@@ -281,7 +281,7 @@ static const shape_row rows[] = {
     {HN_SHAPE_GROUND, 4, 0, hn_joint_draw}, // its pin, above the bars
     {HN_SHAPE_SPRING, 4, 0, draw_ends},     {HN_SHAPE_DAMPER, 4, 0, draw_ends},
 };
-enum { N_ROWS = sizeof rows / sizeof *rows, N_ORDERS = 5 };
+enum { N_ROWS = sizeof rows / sizeof *rows, N_ORDERS = HN_SHAPE_ORDERS };
 
 static const shape_row *row_of(hn_shape_kind kind, int order, int ground) {
     for (int k = 0; k < N_ROWS; k++) {

@@ -26,6 +26,9 @@ typedef struct hn_tear {
 } hn_tear;
 
 /// The layout of a sheet. Made once from sizes and views, then only read.
+/// A shape is drawn at most so many times: a spring once itself, and once as the pins at its ends.
+enum { HN_SHAPE_ORDERS = 5 };
+
 typedef struct hn_sheet {
     int width, height;
     double line; ///< width of an outline [px]
