@@ -197,6 +197,20 @@ class Snapshot(Command):
                 self.assertAlmostEqual(slope(strips[0]), slope(strips[1]), 6)
                 self.assertEqual(abs(slope(strips[0])) > 0.1, tilted)
 
+    def test_many_springs_are_drawn_from_any_side(self):
+        # each is drawn twice, itself and its pins: the program ends badly where it has no room for both
+        spring = {"to": {"body": "bob", "at": [0, 0, 0]}, "stiffness": 1, "rest": 1}
+        scene = {"holonom": 1, "name": "springs", "bodies": [{"name": "bob", "mass": 1, "com": [0, 0, 0], "inertia": {"zz": 0.1}}],
+                 "joints": [{"name": "pin", "type": "revolute", "parent": {"body": "ground"}, "child": {"body": "bob", "at": [0, 1, 0]}, "coordinate": "th"}],
+                 "loads": [{"name": f"s{i}", "spring": {"from": [i / 10, 2, 0], **spring}} for i in range(40)]}
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "springs.json")
+            with open(path, "w", encoding="utf-8") as file:
+                json.dump(scene, file)
+            for view in ("front", "35,22"):
+                svg = self.picture(folder, "a.svg", "--view", view, scene=path)[0].decode()
+                self.assertGreater(svg.count("<path"), 80, view)
+
     def test_gears_are_circles(self):
         with tempfile.TemporaryDirectory() as folder:
             svg = self.picture(folder, "a.svg", "--time", "0", scene="planetary-gear")[0].decode()
